@@ -10,10 +10,10 @@ namespace anamorph {
 /// A parameter was given a value it cannot take. `what()` is one line: "fov=200: must be ...".
 class Error : public std::runtime_error {
   public:
-    /// `rule` says what the value must be: "must be a number from 0 to 8".
+    /// Constructs the error of one parameter. `rule` says what the value must be: "must be a number from 0 to 8".
     Error(const std::string& parameter, const std::string& value, const std::string& rule)
         : std::runtime_error(parameter + "=" + value + ": " + rule), m_parameter(parameter) {}
-    /// A failure that no single parameter caused.
+    /// Constructs the error of a failure that no single parameter caused; parameter() is then empty.
     explicit Error(const std::string& message) : std::runtime_error(message) {}
 
     const std::string& parameter() const noexcept { return m_parameter; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays that begin with a line of the cache.
+// Arrays aligned to cache lines.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ struct LineAllocator {
     static constexpr std::align_val_t kLine{64};
 };
 
-/// A vector whose first value begins a line: whole vectors of a processor, loaded from multiples of their
-/// size on, then lie in one line each.
+/// A std::vector aligned to cache lines: each SIMD vector that is loaded from a multiple of its size then lies in one
+/// line.
 template <class T>
 using LineVector = std::vector<T, LineAllocator<T>>;
 

@@ -11,7 +11,7 @@ namespace anamorph {
 /// The core starts no thread of its own: a host passes its own pool here.
 using ParallelFor = std::function<void(std::int64_t count, const std::function<void(std::int64_t)>& body)>;
 
-/// The loop without threads.
+/// A ParallelFor without threads: calls `body` for each i in turn, on the calling thread.
 inline void serial_for(std::int64_t count, const std::function<void(std::int64_t)>& body) {
     for (std::int64_t i = 0; i < count; ++i) body(i);
 }

@@ -49,17 +49,17 @@ inline constexpr Projection kProjections[] = {
 /// one's.
 enum class PixelSpacing { edges, centers };
 
-/// "equirectangular" and so on; "latlong" is an alias. Throws Error naming `parameter`.
+/// Finds a projection by its name ("equirectangular") or alias ("latlong"). Throws Error naming `parameter`.
 Projection projection_from_name(std::string_view name, const std::string& parameter = "projection");
-/// The name that recipes have for it; never an alias.
+/// The name of a projection in recipes; never an alias.
 std::string_view name_of(Projection projection);
 /// The names of all projections, separated by ", ", for messages and documentation.
 std::string projection_names();
-/// The names one by one, with the aliases behind.
+/// The names of all projections, followed by the aliases.
 std::vector<std::string> projection_name_list();
 /// A projection's default field of view and its limits.
 FieldOfView fov_of(Projection projection);
-/// Faces across and down its picture; 0 where the picture is one piece of any shape.
+/// The numbers of faces across and down a picture; 0 where the picture is one piece of any shape.
 struct FaceGrid {
     int columns = 0, rows = 0;
     bool joined = false;  ///< the faces are parts of one picture, which has no edges where they meet
@@ -72,10 +72,10 @@ inline bool has_faces(Projection projection) {
 }
 /// Are the rows of a projection's picture circles around the vertical axis, and those of 360 degrees closed?
 bool rows_turn(Projection projection);
-/// Height over width of a picture of a field of view in degrees.
+/// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
-/// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns
+/// One smooth piece of a chart: its place in the image, and its axes (right, down, forward) as columns
 /// in the frame of rays. Layouts of faces have more than one.
 struct Piece {
     Box box;
@@ -88,7 +88,7 @@ struct Piece {
 struct Branch : Setting {
     int piece = 0;
     glm::dmat3 axes{1};
-    double pixel_x = 0, pixel_y = 0;  ///< of the image, where the piece's (centre_x, centre_y) stands
+    double pixel_x = 0, pixel_y = 0;  ///< the image point, in pixels, of the piece's (centre_x, centre_y)
 };
 
 /// A flat picture of directions: a projection, its field of view and its pixels.
@@ -97,16 +97,17 @@ class Chart {
     /// The largest value of Pannini's d.
     static constexpr double kMostDistance = 1000;
 
-    /// `fov`: the horizontal field of view of the whole image in degrees, or of each face; 0 takes the
-    /// projection's default (default_fov); without distortion. `d`: Pannini's distance. `prefix` is put before
-    /// "fov", "size", "d" and "lens" in errors. Throws Error.
+    /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
+    /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `prefix` is put
+    /// before "fov", "size", "d" and "lens" in errors. Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
           const LensModel& lens = {});
 
-    /// The field of view that a chart of this projection has unless it is given one, in degrees.
+    /// The horizontal field of view that a chart of this projection has unless it is given one, in degrees.
     static double default_fov(Projection projection);
-    /// The same picture with other pixels; faces stay square. Throws Error.
+    /// A chart of the same picture with another size in pixels. Throws Error on a size out of range, or one that does
+    /// not give square faces.
     Chart resized(int width, int height) const;
 
     Projection projection() const { return m_projection; }
@@ -120,7 +121,7 @@ class Chart {
 
     /// Does azimuth close on itself in this image (a full turn)? Its period in pixels is then period().
     bool closed() const { return m_closed; }
-    /// Pixels of a full turn: the width, or one less where fields of view run between pixel centres.
+    /// The width of a full turn in pixels: that of the image, or one less where fields of view run between pixel centres.
     int period() const { return m_spacing == PixelSpacing::edges ? m_width : m_width - 1; }
     /// Do the first and last rows touch the poles (equirectangular over the full 180 degrees)?
     bool reaches_poles() const { return m_poles; }
@@ -130,14 +131,15 @@ class Chart {
     /// scale_x(), known better than double holds it.
     const Constant& pixels_per_unit() const { return m_sx; }
     const Constant& units_per_pixel() const { return m_per_x; }
-    /// Pixels for a radian straight ahead of a piece.
+    /// Pixels per radian straight ahead of a piece.
     double pixels_per_radian() const;
-    /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite where rows do
-    /// not run around the sphere.
+    /// The distance in pixels, or any multiple of it, between two points of one ray: a full turn; infinite where rows
+    /// do not run around the sphere.
     double turn() const {
         return m_closed ? period() : m_turns ? 2 * std::numbers::pi * scale_x() : HUGE_VAL;
     }
-    /// A computed point of a ray and the exact one of another lie no farther apart, where the plane has an end; else infinite.
+    /// The largest distance, in pixels, of a computed point of a ray from the exact point of another, where the plane is
+    /// bounded; else infinite.
     ///
     /// Exact points lie within the plane's radius R of its middle. Computed ones do but for rounding, at most that of a lens's
     /// polynomial: 14 units of 2^-53 times its condition, which lens.cpp takes to be below 2^40. But straight behind, next to the
@@ -147,11 +149,11 @@ class Chart {
     /// more than a thirtieth of 2 R, which is a pixel at least: far above the rounding of coordinates, which are below 2^24.
     double widest() const;
 
-    /// The local ray through an image point. Meaningful where inside() >= 0.
+    /// The local ray through an image point; valid where inside() >= 0.
     template <class T>
     Ray<T> local_ray(const T& x, const T& y, const Branch& branch) const;
 
-    /// >= 0 where the image point has a ray; the sign holds for all members of an interval, or is open.
+    /// A number that is >= 0 where the image point has a ray. For an interval the sign holds for all members, or is open.
     template <class T>
     T inside(const T& x, const T& y, int piece = 0) const;
 
@@ -159,8 +161,8 @@ class Chart {
     template <class T>
     Point<T> local_point(const Ray<T>& local, const Branch& branch) const;
 
-    /// > 0 where a local ray is seen by the lens and lies on the piece. A lens that cannot see all directions
-    /// ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
+    /// A number that is > 0 where a local ray is seen by the lens and lies on the piece. A projection that cannot show all
+    /// directions ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
     /// What sees() says of a chart whose lens did not end.

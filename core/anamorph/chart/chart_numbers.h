@@ -13,7 +13,7 @@ namespace anamorph {
     external template Point<T> Chart::local_point(const Ray<T>&, const Branch&) const;  \
     external template Point<T> Lens::ideal(const Point<T>&) const;                      \
     external template Point<T> Lens::observed(const Point<T>&) const;
-/// Whether there are such.
+/// Declares the functions that say whether an image point has a ray, and whether a ray is seen, for the number T.
 #define ANAMORPH_CHART_SIGHT(external, T)                             \
     external template T Chart::inside(const T&, const T&, int) const; \
     external template T Chart::sees(const Ray<T>&, int) const;

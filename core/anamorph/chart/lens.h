@@ -38,20 +38,20 @@
 
 namespace anamorph {
 
-/// A lens by its parameters.
+/// A model of lens distortion and its parameters.
 struct LensModel {
-    /// The models above.
+    /// The models described at the head of this file.
     enum class Kind { none, ptlens, brown, three_de4, kb4 };
     Kind kind = Kind::none;
     /// The values of the model, in the order of names().
     std::vector<double> values;
 
-    /// "none", or MODEL:name=value,name=value as in "ptlens:a=0.01,b=-0.03"; what is not named is 0. Throws Error
-    /// naming `parameter`.
+    /// Parses "none", or MODEL:name=value,name=value as in "ptlens:a=0.01,b=-0.03"; a parameter that is not named is
+    /// 0. Throws Error naming `parameter`.
     static LensModel parse(std::string_view text, const std::string& parameter = "lens");
     /// The text that parse() reads as this model.
     std::string text() const;
-    /// The names of a model's values.
+    /// The names of a model's parameters.
     static const std::vector<std::string>& names(Kind kind);
     /// How much larger the observed picture is than the ideal one, at the centre.
     double magnification() const;
@@ -59,15 +59,15 @@ struct LensModel {
 
 class LensTable;
 
-/// What the formulas of a lens are read with.
+/// The coefficients and limits with which the formulas of a lens (chart/lens_formula.h) are evaluated.
 struct LensTerms {
-    /// Which way the formula goes.
+    /// Does the formula map ideal points to observed ones, not the other way round?
     bool to_observed = true;
     /// The model's own unit in units of the plane, its reciprocal, and the centre.
     Constant unit, per_unit, shift_x, shift_y;
-    /// Is the unit another than the plane's?
+    /// Is the model's unit another than the plane's?
     bool has_unit = false;
-    /// Is the centre another than the picture's middle?
+    /// Is the lens's centre another point than the picture's middle?
     bool shifted = false;
 
     /// Is S a polynomial in r, not in r^2?
@@ -79,21 +79,22 @@ struct LensTerms {
 
     /// How far from the centre the ideal and the observed points may lie, in the model's unit.
     double ideal_end = 0, observed_end = 0;
-    /// The end of t, and no more than what it becomes there.
+    /// The largest t (radial_of()) before the lens's end, and a lower bound of radial_at() there.
     double end = 0, value_end = 0;
-    /// About what a value times it is near the root.
+    /// The first approximation of the root of radial_at(t) = value is value * slope.
     double slope = 1;
 
-    /// The root of radial_at(t) = value is one up to kResidual roundings of value * `condition`, and radial_at() itself
-    /// is off by kOff of them at most (derived in lens.cpp); of a value next to nothing, by as many of kSmall of what it
-    /// becomes at the end.
+    /// The computed root of radial_at(t) = value has a residual of at most kResidual roundings of value * `condition`, and
+    /// radial_at() itself an error of at most kOff of them (derived in lens.cpp). For a value next to 0, roundings of
+    /// kSmall * value_end count in its place.
     static constexpr double kResidual = 80, kOff = 32, kSmall = 0x1p-24;
     double condition = 1;
-    /// settled() ends with a step of at most kStill roundings of the end, or after kSteps; before them come kFastSteps.
+    /// settled() takes kFastSteps of Newton's iteration, then up to kSteps that are certain to converge; it ends with a step
+    /// of at most kStill roundings of `ideal_end`.
     static constexpr double kStill = 512;
     static constexpr int kSteps = 72, kFastSteps = 3;
 
-    /// What intervals are read from (chart/lens_table.h).
+    /// The table with which intervals are evaluated (chart/lens_table.h).
     std::shared_ptr<const LensTable> table;
 };
 
@@ -104,20 +105,20 @@ inline bool somewhere(bool condition) {
 #include "anamorph/chart/lens_formula.h"
 }  // namespace lens_formula
 
-/// Taylor coefficients by powers of what is added to the square of the distance from the centre.
+/// The coefficients of a Taylor series in the increment of the squared distance from the centre.
 using LensCoefficients = lens_formula::Series<Interval, 5>;
 /// Encloses the coefficients of S about any member of `squared`.
 LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared);
 /// Encloses the coefficients of shrink() about any member of `squared`.
 LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared);
 
-/// Taylor coefficients by powers of what is added to a value, and by how much double is off that computes them.
+/// The coefficients of a Taylor series in the increment of a value, and the error of computing them in double.
 struct ComputedSeries {
     /// The degree up to which double computes them.
     static constexpr int kDegree = 4;
-    /// Encloses the coefficients, and the next one.
+    /// Intervals that enclose the coefficients up to kDegree, and the next one.
     LensCoefficients exact;
-    /// How far those that are computed are off.
+    /// Bounds of the errors of the computed coefficients.
     double error[kDegree + 1] = {};
 
     /// The series of which nothing is known.
@@ -131,17 +132,17 @@ struct ComputedSeries {
 /// The series of shrink() about any value of an interval, as double computes it.
 ComputedSeries computed_shrink(const LensTerms& lens, const Interval& value);
 
-/// The root's first approximation for double, by the table.
+/// The first approximation, in double, of the root of radial_at(t) = value, by the lens's table.
 double near_root(const LensTerms& lens, double value);
 
-/// stretch_of() for jets of intervals, by its coefficients.
+/// stretch_of() for jets of intervals, by its Taylor coefficients.
 template <int N>
 Jet<Interval, N> stretch_of(const LensTerms& lens, const Point<Jet<Interval, N>>& u);
 /// shrink() for jets of intervals, by its coefficients.
 template <int N>
 Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
-/// shrink() for numbers that need more than an iteration; lens_formula.h has it for the others.
+/// shrink() for intervals. lens_formula.h has it for the numbers for which an iteration is enough.
 Interval shrink(const LensTerms& lens, const Interval& value);
 /// shrink() with its rounding.
 template <class Real>
@@ -154,7 +155,8 @@ Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 template <class Real>
 NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value);
 
-/// Lenses with a tangential part are not followed: there is no bound, and no base is asked for.
+/// settled() near a known point. For lenses with a tangential part no bound is known: the result is unbounded, and no
+/// base is written.
 template <class Real>
 Point<NearBound<Real>> settled(const LensTerms&, const Point<NearBound<Real>>& v) {
     const auto unbounded = RestBound<Real>::unbounded();
@@ -169,10 +171,10 @@ Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v);
 template <int N>
 Point<Jet<Interval, N>> settled(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
-/// The lens of a picture.
+/// A lens and its distortion in the plane of one picture.
 class Lens {
   public:
-    /// The plane of a picture: half of what it covers, and units of it for a pixel.
+    /// The part of the plane that a picture covers: half its width and height, and the units of the plane per pixel.
     struct Plane {
         long double half_width, half_height, per_x, per_y;
     };
@@ -184,31 +186,31 @@ class Lens {
     const LensModel& model() const { return m_model; }
     const LensTerms& terms() const { return m_terms; }
 
-    /// The ideal point of an observed one. Meaningful, as is observed(), where inside() and sees() are not negative.
+    /// The ideal point of an observed one; valid where inside() is not negative.
     template <class T>
     Point<T> ideal(const Point<T>& observed) const;
-    /// The observed point of an ideal one.
+    /// The observed point of an ideal one; valid where sees() is not negative.
     template <class T>
     Point<T> observed(const Point<T>& ideal) const;
-    /// Not negative where an observed point has an ideal one.
+    /// A number that is not negative where an observed point has an ideal one.
     template <class T>
     T inside(const Point<T>& observed) const {
         return lens_formula::has_ideal(m_terms, observed);
     }
-    /// Not negative where an ideal point has an observed one.
+    /// A number that is not negative where an ideal point has an observed one.
     template <class T>
     T sees(const Point<T>& ideal) const {
         return lens_formula::has_observed(m_terms, ideal);
     }
 
-    /// How far from the centre an observed point may lie, in the plane.
+    /// The largest distance of an observed point from the lens's centre, in units of the plane.
     double reach() const { return m_terms.observed_end * m_terms.unit.value(); }
 
   private:
     void set_terms();
     /// Returns whether the lens ends because it folds. `corner`: the farthest observed point of the picture.
     bool set_ends(double corner);
-    /// What rounding of radial_at() is relative to, over its value.
+    /// The condition number of radial_at() over an interval: the magnitude to which its rounding is relative, over its value.
     double condition_over(const Interval& t) const;
 
     LensModel m_model;
@@ -231,13 +233,13 @@ namespace lens_detail {
 using lens_formula::reversed;
 using lens_formula::shrink_series;
 
-/// Encloses the root of every member.
+/// Encloses the root t of radial_at(t) = value for every member of `value`.
 Interval radial_root(const LensTerms& lens, const Interval& value);
 template <class T>
 T radial_root(const LensTerms& lens, const T& value) {
     return lens_formula::radial_root(lens, value);
 }
-/// shrink() of what double computes, where the lens's table knows it.
+/// shrink() in double with a bound of its rounding, by the lens's table; nothing where the table does not have it.
 std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Rounded<double>& value);
 /// The least slope of radial_at() over an interval.
 double least_slope(const LensTerms& lens, const Interval& t);
@@ -257,7 +259,7 @@ Rounded<Real> radial_root(const LensTerms& lens, const Rounded<Real>& value) {
     return known ? Rounded<Real>(around, 0, far) : Rounded<Real>(Interval(0, lens.end), 0, lens.end);
 }
 
-/// sum_k series_k n^k by Horner's rule: n has no constant part.
+/// The sum of series_k n^k by Horner's rule; n has no constant part.
 template <class J, class T, int N>
 J compose(const lens_formula::Series<T, N>& series, const J& n) {
     J sum(series.c[N]);
@@ -265,7 +267,7 @@ J compose(const lens_formula::Series<T, N>& series, const J& n) {
     return sum;
 }
 
-/// The largest sum of a row of magnitudes, as `of` has them.
+/// The largest row sum of the matrix `slope`, of whose entries `of` gives the magnitudes.
 template <class T, class Of>
 double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
     return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
@@ -295,8 +297,8 @@ Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<R
 
 namespace lens_detail {
 
-/// In norms, the larger of x and y: no two points v are farther apart in radially_undistorted() than by so many times their
-/// distance. Its slope is s + 2 s' v v^T with s = shrink(|v|^2), both by their Taylor series.
+/// A Lipschitz constant of radially_undistorted() over all v, in the norm that is the larger of x and y. Its derivative is
+/// s + 2 s' v v^T with s = shrink(|v|^2), both by their Taylor series.
 template <class R>
 double most_undistorted(const LensTerms& lens, const Point<R>& v) {
     const R squared = square(v.x) + square(v.y);
@@ -319,8 +321,8 @@ double most_tangential(const LensTerms& lens, const Point<R>& u) {
     return (2 * (mx * x + my * y) + 4 * std::max(mx * x, my * y) + 2 * (my * x + mx * y)) * (1 + 0x1p-40);
 }
 
-/// settled() of jets v, whose constant parts are u's, where nearer() maps `jet` into itself for all of `around`, as far
-/// around v as `off`.
+/// settled() of jets v, where u is the result for their constant parts and nearer() maps `jet` into itself for all of
+/// `around`, the points up to `off` from v.
 template <class Real>
 Point<Rounded<Real>> settled_within(const LensTerms& lens, const Point<Rounded<Real>>& v,
                                     const Point<Rounded<Real>>& u, const Point<Rounded<Real>>& around,
@@ -349,6 +351,8 @@ Point<Rounded<Real>> settled_within(const LensTerms& lens, const Point<Rounded<R
 
 }  // namespace lens_detail
 
+/// settled() with a bound of its rounding.
+///
 /// In norms (number/rounded.h), the larger of x and y. The exact u is what nearer() maps to itself, and so is what is
 /// computed for a v that is F of it, `rest` away: both lie in a ball of jets about the constant parts that nearer() maps
 /// into itself. With R and T what most_undistorted() and most_tangential() say there, they are apart by
@@ -385,7 +389,7 @@ Jet<T, K> lowest(const Jet<T, N>& jet) {
     return part;
 }
 
-/// Degree by degree, from K on: what F(u) lacks of v is the slope times what u lacks.
+/// Solves F(u) = v degree by degree, from K on: what F(u) lacks of v is the slope times what u lacks.
 template <int K, class T, int N>
 void settle_from(const LensTerms& lens, const Point<Jet<T, N>>& v, const lens_formula::Slope<T>& slope,
                  Point<Jet<T, N>>& u) {
@@ -415,7 +419,7 @@ bool holds(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
         if (!(a.c[i].lo <= b.c[i].lo && b.c[i].hi <= a.c[i].hi)) return false;
     return true;
 }
-/// Coefficients of b, in each degree with as much around as a and b are apart there at most.
+/// The jet b with each coefficient widened by the largest difference of a and b in its degree.
 template <int N>
 Jet<Interval, N> with_room(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
     using J = Jet<Interval, N>;
@@ -431,13 +435,15 @@ Jet<Interval, N> with_room(const Jet<Interval, N>& a, const Jet<Interval, N>& b)
 
 }  // namespace lens_detail
 
-/// Degree by degree above the constant parts.
+/// settled() of jets: first their constant parts, then degree by degree.
 template <class T, int N>
 Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v) {
     using lens_formula::settled;
     return lens_detail::settled_by_degree(lens, v, settled(lens, Point<T>{v.x.c[0], v.y.c[0]}));
 }
 
+/// settled() of jets of intervals.
+///
 /// u is what nearer() maps to itself. With the constant parts known, the parts above of one member's jet are a point of
 /// a space of finite dimension, and nearer() is continuous there. A box of that space that it maps into itself for every
 /// member holds a fixed point (Brouwer), and there is only one: F(u) = v, solved degree by degree with an invertible
@@ -477,7 +483,7 @@ Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value) {
 
 namespace lens_detail {
 
-/// A function of the square of a point's distance from the centre, by its coefficients.
+/// A function of the square of a point's distance from the centre, by its Taylor coefficients.
 template <int N>
 Jet<Interval, N> compose_squared(const LensCoefficients& function, const Jet<Interval, N>& squared) {
     static_assert(N <= LensCoefficients::kDegree);
@@ -498,8 +504,9 @@ Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>&
     return lens_detail::compose_squared(shrink_coefficients(lens, squared.c[0]), squared);
 }
 
-/// The Taylor polynomial about a base b, with c what encloses its next coefficient wherever the value may be: it is off by
-/// |c| |rest|^5 at most. Bases and the loop over a block's pixels have the coefficients as they are computed here.
+/// shrink() near a known value: the Taylor polynomial about a base b. With c what encloses its next coefficient wherever
+/// the value may be, it is off by |c| |rest|^5 at most. Bases and the loop over a block's pixels have the coefficients as
+/// they are computed here.
 template <class Real>
 NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value) {
     constexpr int kDegree = ComputedSeries::kDegree;

@@ -6,7 +6,7 @@
 
 namespace anamorph {
 
-/// A half axis of a deformation, in the units of u or v. It and its inverse stay in the range of double.
+/// A half axis of a deformation, in the units of u or v. The half axis and its inverse stay in the range of double.
 inline constexpr NumberRow kExtentRow{"extent", 1, 1e-300, 1e300};
 /// The share of V below which Gaussians are cut off.
 inline constexpr NumberRow kCutoffRow{"cutoff", 1e-7, 0, 0.5};

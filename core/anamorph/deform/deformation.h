@@ -43,7 +43,7 @@ struct Deformation {
 /// Checks a bump. Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow.
 void check_deformation(const Deformation& deformation);
 
-/// exp(-a), a not negative, of numbers that have nothing faster for it.
+/// exp(-a) for a >= 0. Numbers that have a faster way overload it.
 template <class T>
 T exp_of_minus(const T& a) {
     return exp(-a);
@@ -51,7 +51,7 @@ T exp_of_minus(const T& a) {
 
 #include "anamorph/deform/deformation_formula.h"
 
-/// F of x = (u - c_u) / a_u and y = (v - c_v) / a_v: 1 at the centre.
+/// F at x = (u - c_u) / a_u and y = (v - c_v) / a_v; it is 1 at the centre.
 template <class T>
 T kernel_value(DeformationKernel kernel, const T& x, const T& y) {
     const T squared = square(x) + square(y);
@@ -71,11 +71,11 @@ struct DisplacementJet {
 };
 /// Finds the displacement and its derivatives at p in double, with no cutoff; deformations that are not enabled add nothing.
 DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p);
-/// Adds one of them, enabled or not.
+/// Adds the displacement at p of one deformation, enabled or not, and its derivatives to `sum`.
 void add_displacement(const Deformation& deformation, glm::dvec2 p, DisplacementJet& sum);
 
-/// The unit normal of a displaced surface at a point where the one before has the derivatives base_u and
-/// base_v: (base_u + D_u) x (base_v + D_v). Zero where these are parallel.
+/// The unit normal of a displaced surface at a point where the undeformed surface has the derivatives base_u and
+/// base_v: the direction of (base_u + D_u) x (base_v + D_v); 0 where these are parallel.
 glm::dvec3 normal_of(const DisplacementJet& displacement, glm::dvec3 base_u, glm::dvec3 base_v);
 
 /// What an edit of a list does to the surface: `before` is taken away, `after` is added. Neither is there if
@@ -86,7 +86,7 @@ struct DeformationChange {
     DeformationChange undo() const { return {after, before}; }
 };
 
-/// The list and its edits. Each says what it does to the surface; undoing is applying the opposite. Throws
+/// A list of deformations and its edits. Each edit returns its change of the surface, whose opposite undoes it. Throws
 /// Error on a deformation that check_deformation refuses and on a position that is not in the list.
 class DeformationList {
   public:
@@ -96,17 +96,17 @@ class DeformationList {
 
     const std::vector<Deformation>& entries() const { return m_entries; }
 
-    /// Puts a deformation behind the last.
+    /// Appends a deformation.
     DeformationChange add(const Deformation& deformation);
-    /// Puts one before that at `position`, or behind the last.
+    /// Inserts a deformation before the one at `position`, or at the end of the list.
     DeformationChange insert(std::size_t position, const Deformation& deformation);
-    /// Puts one in the place of that at `position`.
+    /// Replaces the deformation at `position`.
     DeformationChange change(std::size_t position, const Deformation& deformation);
-    /// Takes one out.
+    /// Removes the deformation at `position`.
     DeformationChange remove(std::size_t position);
-    /// Turns one on or off.
+    /// Enables or disables the deformation at `position`.
     DeformationChange enable(std::size_t position, bool enabled);
-    /// The entry at `from` then stands at `to`. The surface stays as it is.
+    /// Moves the entry at `from` to `to`. The surface does not change.
     void move(std::size_t from, std::size_t to);
 
   private:
@@ -115,7 +115,7 @@ class DeformationList {
     std::vector<Deformation> m_entries;
 };
 
-/// The changes that lead from the surface of one list to that of another: only what differs, in any order.
+/// The changes that lead from the surface of one list to the surface of another; entries of both lists are left out.
 std::vector<DeformationChange> difference(const std::vector<Deformation>& from,
                                           const std::vector<Deformation>& to);
 

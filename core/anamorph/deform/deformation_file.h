@@ -23,22 +23,22 @@
 
 namespace anamorph {
 
-/// Longer lists are refused.
+/// The largest number of deformations in a file; longer lists are refused.
 inline constexpr std::size_t kMaxDeformations = std::size_t{1} << 20;
 
-/// Reads JSON as above.
+/// Reads a list in the JSON format described above.
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name);
-/// Reads CSV as above.
+/// Reads a list in the CSV format described above.
 std::vector<Deformation> parse_deformations_csv(std::string_view text, std::string_view name);
-/// Chooses by the end of the name: .csv, else JSON.
+/// Reads a list in the format that the ending of the name says: CSV for .csv, else JSON.
 std::vector<Deformation> parse_deformations_file(std::string_view text, std::string_view name);
 
-/// The text of a file that reads back as the same list, to the bit.
+/// A list as a JSON file, which reads back as the same list, to the bit.
 std::string deformations_json(const std::vector<Deformation>& list);
 /// The text of a CSV file that reads back as the same list, to the bit.
 std::string deformations_csv(const std::vector<Deformation>& list);
 
-/// "gaussian", "wendland_c2".
+/// The name of a kernel in files: "gaussian" or "wendland_c2".
 const char* name_of(DeformationKernel kernel);
 /// The kernel of that name. Throws Error on other names.
 DeformationKernel kernel_named(std::string_view name);

@@ -5,13 +5,13 @@
 // No include guard and no namespace: vectors need the templates compiled for each instruction set, so whoever
 // reads them includes this file inside a namespace of his own (deform/deformation.h, deform/deform_lanes.cpp).
 
-/// exp(-r^2) of r^2.
+/// The Gaussian exp(-r^2), as a function of r^2.
 template <class T>
 inline T gaussian_of(const T& squared) {
     return exp_of_minus(squared);
 }
 
-/// (1 - r)^4 (4 r + 1) up to r = 1, then 0, of r^2.
+/// Wendland's (1 - r)^4 (4 r + 1) up to r = 1, then 0, as a function of r^2.
 template <class T>
 inline T wendland_of(const T& squared) {
     const T r = sqrt(squared), rest = T(1.0) - r;
@@ -21,7 +21,7 @@ inline T wendland_of(const T& squared) {
     return select(is_negative(rest), T(0.0), select(is_zero(squared), centre, inside));
 }
 
-/// Three numbers: a vector of space.
+/// A vector in space.
 template <class T>
 struct Triple {
     T x, y, z;
@@ -35,7 +35,7 @@ inline T dot_product(const Triple<T>& a, const Triple<T>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// A normal n, of any length, after the Jacobian J = I + a g^T + b h^T, with a and b the derivatives of the
+/// Transforms a normal n, of any length, by the Jacobian J = I + a g^T + b h^T, with a and b the derivatives of the
 /// displacement by u and v, and g and h the gradients of u and v:
 ///     cof(J) n = n + a x (n x g) + b x (n x h) + ((g x h) . n) a x b
 /// For tangents s x t = n this is J s x J t. gh: g x h.
@@ -50,9 +50,9 @@ inline Triple<T> turned_normal(const Triple<T>& n, const Triple<T>& a, const Tri
             n.z + from_u.z + from_v.z + across * both_ways.z};
 }
 
-/// The sum over the corners at a point of normal times angle is the surface's normal there (Thuermer and
-/// Wuethrich 1998). This is one corner's, between edges of unit length, one of which may be 0: the normal
-/// a x b / |a x b|, or 0, and the angle.
+/// The normal and the angle of one corner, between edges of unit length, one of which may be 0: a x b / |a x b|, or 0,
+/// and the angle. The sum over the corners at a point of normal times angle is the surface's normal there (Thuermer and
+/// Wuethrich 1998).
 template <class T>
 inline Triple<T> corner_normal(const Triple<T>& a, const Triple<T>& b, T& angle) {
     const Triple<T> across = cross_product(a, b);

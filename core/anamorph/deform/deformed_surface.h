@@ -34,11 +34,11 @@ struct PointTerm;
 
 /// How exactly displacements are added.
 struct DeformOptions {
-    double cutoff = kCutoffRow.standard;  ///< of V; 0: nothing is cut off
-    double resolution = 0x1p-40;          ///< of the displacement: a power of two from 2^-500 to 2^500
+    double cutoff = kCutoffRow.standard;  ///< share of V below which Gaussians are cut off; 0: none are
+    double resolution = 0x1p-40;          ///< step of the displacement: a power of two from 2^-500 to 2^500
 };
 
-/// The sums of what lists add to the surface, in fixed point, with the bound of their error.
+/// The totals of a list of deformations: the magnitudes of its displacements, and the bound of their error.
 class DisplacementSum {
   public:
     /// An empty sum. Throws Error on options out of range.
@@ -47,18 +47,18 @@ class DisplacementSum {
     const DeformOptions& options() const { return m_options; }
     /// The distance from the centre, in extents, at which a kernel is cut off.
     double reach(DeformationKernel kernel) const;
-    /// Takes note of changes. Throws Error naming the field if they leave the range, and then changes
-    /// nothing.
+    /// Adds changes of the list to the totals. Throws Error naming the field if they leave the range, and then
+    /// changes nothing.
     void apply(std::span<const DeformationChange> changes);
-    /// No component of the displacement is farther than this from eq. (4.1).
+    /// The largest error of a component of the displacement against eq. (4.1).
     double error_bound() const;
-    /// No component of the displacement is larger.
+    /// A bound of the magnitude of every component of the displacement.
     double most() const;
 
   private:
     struct Totals {
         std::int64_t units[3] = {};     ///< magnitudes of V
-        std::int64_t gaussian[3] = {};  ///< those of Gaussians
+        std::int64_t gaussian[3] = {};  ///< magnitudes of V of the Gaussians
         std::int64_t count = 0;
     };
     void add(Totals& totals, const Deformation& deformation, int sign) const;
@@ -67,7 +67,7 @@ class DisplacementSum {
     Totals m_totals;
 };
 
-/// Columns and rows [begin, end).
+/// A part of a grid: columns and rows [begin, end).
 struct GridPart {
     int column_begin = 0, row_begin = 0, column_end = 0, row_end = 0;
 
@@ -81,39 +81,39 @@ struct SurfaceSlopes {
 
     int count;
     std::int64_t first;          ///< the points are first, first + 1, ...
-    const std::int32_t* points;  ///< or, unless null, these
-    double (*by)[kMost];         ///< by[c][k]: component c at the k-th of them by u, by[3 + c][k] by v
+    const std::int32_t* points;  ///< the numbers of the points, unless null
+    double (*by)[kMost];         ///< by[c][k]: derivative of component c at point k by u; by[3 + c][k]: by v
 
-    /// The number of the k-th of the points.
+    /// The number of the k-th point.
     std::int64_t point(int k) const { return points ? points[k] : first + k; }
     /// The derivative of the displacement by u at the k-th point.
     glm::dvec3 by_u(int k) const { return {by[0][k], by[1][k], by[2][k]}; }
-    /// The derivative by v.
+    /// The derivative of the displacement by v at the k-th point.
     glm::dvec3 by_v(int k) const { return {by[3][k], by[4][k], by[5][k]}; }
 };
-/// Called with points that belong together, from several threads, with each point once.
+/// A function that receives the derivatives at all points, each point once, a batch at a time, from several threads.
 using TakeSlopes = std::function<void(const SurfaceSlopes&)>;
 
-/// normals[c][k], of any length, become the unit normals of the displaced surface at the points of `slopes`:
-/// space moves with the Jacobian I + D_u grad(u)^T + D_v grad(v)^T. 0 where there is no direction.
+/// Turns normals[c][k], of any length, into the unit normals of the displaced surface at the points of `slopes`:
+/// space moves with the Jacobian I + D_u grad(u)^T + D_v grad(v)^T. They are 0 where there is no direction.
 void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3 gradient_v,
                   double (&normals)[3][SurfaceSlopes::kMost]);
 
-/// Sums of what the corners of surface cells have for a normal at some points: each its own normal times its
-/// angle (Thuermer and Wuethrich 1998). Edges of the cells are the undeformed surface's tangents, and become
-/// e + D_u du + D_v dv. Sums are in fixed point: the order of the corners does not matter, of which there are
-/// up to 2^16 at a point.
+/// Vertex normals of a deformed surface at some points: the sum over the corners of its cells there of the corner's
+/// normal times its angle (Thuermer and Wuethrich 1998). Edges of the cells are the undeformed surface's tangents, and
+/// become e + D_u du + D_v dv. Sums are in fixed point, so that the order of the corners, up to 2^16 at a point, does
+/// not matter.
 class CornerSums {
   public:
     /// Keeps a reference to `slopes`.
     explicit CornerSums(const SurfaceSlopes& slopes) : m_slopes(slopes) {}
 
-    /// An edge to a neighbour, undeformed, and its change of parameters.
+    /// An edge to a neighbour on the undeformed surface: the differences in space and in the parameters (u, v).
     struct Edge {
         glm::dvec3 points;
         glm::dvec2 parameters;
     };
-    /// A corner at the k-th point, between the edges to the next point of the cell and to the one before.
+    /// Adds a corner at the k-th point, between the edges to the next point of the cell and to the one before.
     void add(int k, const Edge& next, const Edge& previous, bool goes_inwards);
     /// The unit normal at the k-th point, when all corners are added; 0 where there is none.
     glm::dvec3 normal(int k);
@@ -135,17 +135,18 @@ class CornerSums {
 /// Gaussian is a product of a factor of the column and one of the row.
 class DeformedGrid {
   public:
-    /// u and v in any order. Throws Error on values that are not finite, on empty or too many ones.
+    /// Constructs the grid; u and v may be in any order. Throws Error where one of them is empty or too long or has a value
+    /// that is not finite.
     DeformedGrid(std::vector<double> u, std::vector<double> v, const DeformOptions& options = {});
 
-    /// Takes changes of the list; update() or write() carries them out. Throws Error if they are refused.
+    /// Registers changes of the list, which update() or write() carries out. Throws Error if they leave the range.
     void apply(std::span<const DeformationChange> changes);
-    /// Takes one change.
+    /// Registers one change of the list.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
     /// Writes base + displacement where the changes since the last update() or write() have moved something,
-    /// and returns that part; a little around it may be written too. `base` may be null: the displacement
-    /// alone. `out` is not `base`. `displacement`, unless null, gets the displacement beside.
+    /// and returns that part; a little around it may be written too. Where `base` is null, `out` gets the
+    /// displacement alone. `out` is not `base`. `displacement`, unless null, gets the displacement as well.
     template <class T>
     GridPart update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                     T* displacement = nullptr);
@@ -154,17 +155,17 @@ class DeformedGrid {
     void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                T* displacement = nullptr);
 
-    /// Adds to the displacements that are written from now on: three numbers a point, in double, which are
-    /// not copied; null: nothing, as at first. All points are to be written then.
+    /// Sets offsets that are added to the displacements written from now on: three numbers a point, in double,
+    /// which are not copied; null: none, as at first. The caller then has to write all points.
     void set_offsets(const double* offsets) { m_offsets = offsets; }
 
     /// No component of a displacement is farther from eq. (4.1) than this, offsets aside.
     double error_bound() const { return m_sum.error_bound(); }
 
-    /// Gives `take` the derivatives of the displacement by a list at the points that changes reach, and at a
-    /// few around them; at all points if `changes` is null. They are added in double in an order of its own:
-    /// the same bits for any order of the list, and whatever other points there are. A Gaussian that is cut
-    /// off is missing up to 2 reach cutoff |V| / a of a derivative.
+    /// Gives `take` the derivatives of a list's displacement at the points that `changes` move, and at a few around
+    /// them; at all points if `changes` is null. They are summed in double in a fixed order: the same bits for any
+    /// order of the list, and whatever other points there are. A Gaussian that is cut off is missing up to
+    /// 2 reach cutoff |V| / a of a derivative.
     void slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
                 const TakeSlopes& take, const ParallelFor& parallel_for = serial_for) const;
 
@@ -180,14 +181,14 @@ class DeformedGrid {
 };
 
 /// Writes base + displacement of all points of a grid once, faster than DeformedGrid, which can be edited.
-/// The same bits. Returns error_bound().
+/// The points have the same bits. Returns the error bound (DisplacementSum::error_bound()).
 template <class T>
 double deform_grid(const std::vector<Deformation>& list, std::span<const double> u, std::span<const double> v,
                    const DeformOptions& options, const T* base, T* out,
                    const ParallelFor& parallel_for = serial_for);
 
-/// A surface over any points of the texture plane. They are sorted into cells; a deformation visits the cells
-/// that it reaches.
+/// A surface over any points of the texture plane. The points are sorted into cells, and a deformation is added in
+/// the cells within its cutoff only.
 class DeformedPoints {
   public:
     /// A surface of these points (u, v), not deformed yet. Throws Error that names the point on values that are not finite, and on
@@ -196,7 +197,7 @@ class DeformedPoints {
 
     /// Takes changes of the list; update() or write() carries them out. Throws Error if they are refused.
     void apply(std::span<const DeformationChange> changes);
-    /// Takes one change.
+    /// Registers one change of the list.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
     /// Writes what changes have moved, as DeformedGrid::update() does; returns the number of points that were written.
@@ -209,7 +210,7 @@ class DeformedPoints {
                T* displacement = nullptr);
 
     /// Writes all points, deformed by a list and by no changes that were taken before, and gives `take` the
-    /// derivatives at all points. The same bits as write() and slopes(), and faster.
+    /// derivatives at all points. It gives the same bits as write() and slopes(), and is faster.
     template <class T>
     void write_with_slopes(const std::vector<Deformation>& list, const T* base, T* out,
                            const TakeSlopes& take, const ParallelFor& parallel_for = serial_for,
@@ -228,16 +229,16 @@ class DeformedPoints {
   private:
     struct Cell {
         std::size_t begin, end;  ///< slots, multiples of simd::kPointBlock
-        glm::dvec2 least, most;  ///< of its points
+        glm::dvec2 least, most;  ///< bounds of the parameters of its points
     };
     template <class T>
     std::int64_t draw(bool all, const T* base, T* out, const ParallelFor& parallel_for, T* displacement);
-    /// Writes the points of a cell's slots; how many they are.
+    /// Writes the points of a cell's slots, and returns their number.
     template <class T>
     std::int64_t write_slots(std::size_t begin, std::size_t end, const T* base, T* out,
                              T* displacement) const;
-    /// Calls body(cell, near) for cells with points, unless `all` only for those that a term of `visiting`
-    /// reaches; near: the terms of `terms` that reach it.
+    /// Calls body(cell, near) for cells with points: for all of them if `all`, else for those within the cutoff of a
+    /// term of `visiting`. near: the terms of `terms` within whose cutoff the cell is.
     void each_cell(
         const std::vector<simd::PointTerm>& visiting, bool all, const std::vector<simd::PointTerm>& terms,
         const ParallelFor& parallel_for,
@@ -253,17 +254,18 @@ class DeformedPoints {
     const double* m_offsets = nullptr;
 };
 
-/// The displacement and its derivatives at points of the texture plane, added in double in an order of its
-/// own: a point's numbers do not depend on the order of the list nor on the other points, which are best
-/// close together. A cut off Gaussian is missing up to 2 reach cutoff |V| / a of a derivative. out: as many
-/// as points. Throws Error on points that are not finite and lists that are refused.
+/// Finds the displacement and its derivatives at points of the texture plane, summed in double in a fixed order: a
+/// point's numbers do not depend on the order of the list nor on the other points. It is fastest where neighbours
+/// in `points` are close together. A Gaussian that is cut off is missing up to 2 reach cutoff |V| / a of a
+/// derivative. `out` has room for as many as `points`. Throws Error on points that are not finite and on lists out of
+/// range.
 void displacement_jets(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
                        const DeformOptions& options, DisplacementJet* out,
                        const ParallelFor& parallel_for = serial_for);
 
 /// Unit normals of the deformed surface at points of the texture plane, from the kernels' exact derivatives.
-/// base_u and base_v: the undeformed surface's derivatives at every point, or one for all (a plane). As
-/// displacement_jets otherwise. Throws Error on sizes that do not fit.
+/// base_u and base_v: the undeformed surface's derivatives at every point, or one for all (a plane). The order of
+/// sums, the cutoff, `out` and errors are those of displacement_jets(). Throws Error also on sizes that do not fit.
 void deformed_normals(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
                       std::span<const glm::dvec3> base_u, std::span<const glm::dvec3> base_v,
                       const DeformOptions& options, glm::dvec3* out,

@@ -10,9 +10,9 @@
 
 namespace anamorph {
 
-/// What lies between two key frames.
+/// How numbers are interpolated between two key frames.
 enum class KeyInterpolation {
-    step,  ///< the last frame's, up to the next
+    step,  ///< the numbers of the last frame, up to the next
     linear,
     catmull_rom,    ///< cubic Hermite with slopes (v_(i+1) - v_(i-1)) / (t_(i+1) - t_(i-1)) (Catmull and Rom
                     ///< 1974, for any times); it overshoots
@@ -25,16 +25,16 @@ enum class KeyInterpolation {
 /// Numbers given at some times, and interpolated at all others.
 class KeyFrames {
   public:
-    /// values[k] are the numbers at times[k]. Throws Error, naming the entry, unless there is a frame, times
-    /// ascend, all have as many numbers as the first, and all are between -1e300 and 1e300.
+    /// values[k] are the numbers at times[k]. Throws Error, naming the entry, unless there is at least one frame, times
+    /// ascend, all frames have as many numbers as the first, and all numbers are between -1e300 and 1e300.
     KeyFrames(std::vector<double> times, std::vector<std::vector<double>> values,
               KeyInterpolation interpolation);
 
-    /// The numbers at a time. Throws Error on NaN.
+    /// The numbers at a time; before the first frame and after the last one, those of that frame. Throws Error on NaN.
     std::vector<double> at(double time) const;
 
     const std::vector<double>& times() const { return m_times; }
-    /// How many numbers a frame has.
+    /// The number of numbers in a frame.
     std::size_t size() const { return m_values.front().size(); }
 
   private:

@@ -21,15 +21,16 @@
 
 namespace anamorph {
 
-/// Parameters of points of space: p = origin + u axis_u + v axis_v + a part across both.
+/// A plane and its parameters (u, v), by which a point of space is p = origin + u axis_u + v axis_v + a part
+/// perpendicular to both.
 class ParameterPlane {
   public:
-    /// The parameters are x and y.
+    /// Constructs the plane z = 0 whose parameters are x and y.
     ParameterPlane() = default;
     /// The plane through `origin` with these axes. Throws Error on axes that are parallel or zero, and on numbers that are not finite.
     ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 axis_v);
 
-    /// The result is not finite where p is not.
+    /// The parameters (u, v) of a point's projection onto the plane; not finite where p is not.
     glm::dvec2 parameters(glm::dvec3 p) const;
     /// The point of the plane that has the parameters s.
     glm::dvec3 point(glm::dvec2 s) const { return m_origin + s.x * m_axis_u + s.y * m_axis_v; }
@@ -51,7 +52,7 @@ class ParameterPlane {
 /// Whether a map of the plane folds.
 enum class FoldAnswer {
     none,      ///< proved, with outward rounding: det(I + G D') > 0 everywhere
-    found,     ///< at `parameters`, where it is certainly not
+    found,     ///< it is certainly not positive at Fold::parameters
     undecided  ///< it comes too close to 0 somewhere, or there are too many deformations to tell
 };
 /// What a search for folds found.
@@ -69,21 +70,21 @@ class PlaneWarp {
 
     const ParameterPlane& plane() const { return m_plane; }
 
-    /// W(p); Gaussians are cut off where they are below 1e-18.
+    /// The image W(p) of a point; Gaussians are cut off where they are below 1e-18.
     glm::dvec3 forward(glm::dvec3 p) const;
-    /// W'(p): column c is the derivative by coordinate c.
+    /// The Jacobian matrix W'(p): column c is the derivative by coordinate c.
     glm::dmat3 jacobian(glm::dvec3 p) const;
 
-    /// A point that W moves to a given one.
+    /// The result of inverse(): a point that W moves to a given one.
     struct Inverse {
         glm::dvec3 point;
         bool found;  ///< false: `point` is the nearest to a solution that was met, or NaN for a q with NaN
     };
-    /// W^-1(q): Newton's method, damped, then along s + l G D(s) for l from 0 to 1. Where the map folds there
-    /// is more than one solution; this is one of them, or none.
+    /// Solves W(p) = q: by damped Newton's method, then by continuation along s + l G D(s) = t for l from 0 to 1. Where the
+    /// map folds there is more than one solution; the result is one of them, or not found.
     Inverse inverse(glm::dvec3 q) const;
 
-    /// Looks for a fold in boxes of the plane, `most_boxes` of them at most.
+    /// Searches for a fold in boxes of the plane, at most `most_boxes` of them.
     Fold find_fold(std::size_t most_boxes = 20000) const;
 
   private:
@@ -98,8 +99,8 @@ class PlaneWarp {
     bool solve(glm::dvec2 target, double share, glm::dvec2& s) const;
 
     ParameterPlane m_plane;
-    std::vector<Deformation> m_list;  ///< what moves anything
-    bool m_across = true;             ///< all displacements are across the plane
+    std::vector<Deformation> m_list;  ///< the deformations that move anything
+    bool m_across = true;             ///< all displacements are perpendicular to the parameters (G V = 0)
     // Uniform bins over what the list reaches; a deformation that reaches many stands in m_wide.
     glm::dvec2 m_least{0.0}, m_most{0.0};
     int m_side = 0;

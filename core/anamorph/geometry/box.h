@@ -16,7 +16,7 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
-/// What two rectangles have in common; empty() where they have nothing.
+/// The intersection of two rectangles; empty() where they have no pixel in common.
 inline Box intersection(const Box& a, const Box& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }

@@ -17,7 +17,7 @@ template <class T>
 struct Point {
     T x, y;
 };
-/// Points as vectors.
+/// The sum of two points as vectors.
 inline Point<double> operator+(const Point<double>& a, const Point<double>& b) {
     return {a.x + b.x, a.y + b.y};
 }
@@ -25,18 +25,18 @@ inline Point<double> operator+(const Point<double>& a, const Point<double>& b) {
 inline Point<double> operator-(const Point<double>& a, const Point<double>& b) {
     return {a.x - b.x, a.y - b.y};
 }
-/// A vector k times as long.
+/// The vector a scaled by k.
 inline Point<double> operator*(const Point<double>& a, double k) {
     return {a.x * k, a.y * k};
 }
 
-/// The magnitude of its larger coordinate.
+/// The larger of the magnitudes of a point's coordinates.
 inline double largest(const Point<double>& p) {
     return std::max(std::fabs(p.x), std::fabs(p.y));
 }
 
-/// How far the source point moves, in source pixels (level 0), for a step of one target pixel: to the right,
-/// (x_i, y_i), and down, (x_j, y_j).
+/// The derivative of a map from the target to the source: how far the source point moves, in source pixels (level 0),
+/// for a step of one target pixel to the right, (x_i, y_i), and down, (x_j, y_j).
 struct Jacobian {
     double x_i = 1, y_i = 0, x_j = 0, y_j = 1;
 };
@@ -47,7 +47,7 @@ struct Ray {
     T x, y, z;
 };
 
-/// matrix * ray, with entry(column, row) of the matrix.
+/// The product matrix * ray, where entry(column, row) gives the entries of the matrix.
 template <class T, class Entry>
 requires(std::is_invocable_v<Entry, int, int>) Ray<T> transform(const Entry& entry, const Ray<T>& ray) {
     const auto row = [&](int i) -> T {

@@ -12,49 +12,51 @@
 
 namespace anamorph {
 
+/// What stands beyond the edge of an image.
+///
 /// automatic follows the chart (across +-180 degrees, over the poles, across cube edges) and is black
 /// elsewhere; where a full turn fills rows of different lengths (sinusoidal, Hammer), a row goes on at the
 /// nearest texel of the other side. The others are OpenImageIO's modes and treat the image, or each face of a
 /// cube, as a plain rectangle.
 enum class Wrap { automatic, black, clamp, periodic, mirror };
 
-/// A texel of a level, or none (black).
+/// A texel of a level, or no texel (black).
 struct Texel {
     int x = 0, y = 0;
     bool none = false;
 };
 
-/// `count` texels of a row, from `first` to the right; or as many times none.
+/// A run of `count` texels of a row, from `first` to the right; where `first` is none, all of them are.
 struct TexelRun {
     Texel first;
     int count = 1;
 };
 
-/// Finds the texel that stands beyond an edge of a source.
+/// Finds the texels that stand beyond the edges of a source.
 class Border {
   public:
-    /// The borders of a source that `chart` describes at level 0.
+    /// Constructs the border of a source that `chart` describes at level 0.
     Border(const Chart& chart, Wrap wrap);
 
     const Chart& chart() const noexcept { return m_chart; }
-    /// What stands beyond the edge.
+    /// The mode that says what stands beyond the edge.
     Wrap wrap() const noexcept { return m_wrap; }
 
-    /// A rectangle of texels of a level that stand for themselves on `piece`: all of them, but for pictures
-    /// with a round edge.
+    /// A rectangle of texels of a level that lie within `piece` and stand for themselves: all of those, except in
+    /// pictures with a round edge.
     Box interior(int piece, const Size& level) const noexcept;
 
-    /// The texel that stands at (x, y), which may lie any distance outside the piece's interior.
+    /// Finds the texel that stands at (x, y), which may lie any distance outside the piece's interior.
     Texel resolve(std::int64_t x, std::int64_t y, int piece, const Size& level) const noexcept {
         return resolve_run(x, y, piece, level, 1).first;
     }
 
-    /// The texels that stand at (x, y), (x + 1, y), ... as far as they follow each other, 1 to `limit` of
-    /// them.
+    /// Finds the texels that stand at (x, y), (x + 1, y), ... as far as they follow each other in a row, 1 to `limit`
+    /// of them.
     TexelRun resolve_run(std::int64_t x, std::int64_t y, int piece, const Size& level,
                          int limit) const noexcept;
 
-    /// Texels after which the rows of a level's interior repeat: they close on themselves. 0 if they do not.
+    /// The number of texels after which the rows of a level's interior repeat; 0 where they do not close on themselves.
     int turn(const Size& level) const noexcept;
 
   private:

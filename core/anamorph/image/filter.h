@@ -4,6 +4,8 @@
 
 namespace anamorph {
 
+/// The filters by which a source is read.
+///
 /// nearest, bilinear and bicubic (Catmull-Rom) read the source as it is; antialias is bilinear where the map
 /// magnifies and averages over the pixel's footprint, on the pyramid level that fits it, where it minifies.
 /// The last two average over the least rectangle of the source, its sides along the source's own, that covers that
@@ -11,7 +13,7 @@ namespace anamorph {
 /// (Williams 1983), summed_area over all texels, by Source::summed_areas (Crow 1984).
 enum class Filter { nearest, bilinear, bicubic, antialias, pyramid, summed_area };
 
-/// Does it average where the map minifies?
+/// Does a filter average where the map minifies?
 constexpr bool averages(Filter filter) {
     return filter >= Filter::antialias;
 }

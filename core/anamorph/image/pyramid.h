@@ -22,11 +22,11 @@ namespace anamorph {
 class Pyramid final : public Source {
   public:
     static constexpr int kTile = 128;
-    static constexpr int kLeast =
-        4;  ///< No level is smaller than this (each way, or per piece) but the base.
+    /// The smallest width and height, in texels, of a level but the base, or of its pieces.
+    static constexpr int kLeast = 4;
 
-    /// An image of `columns` x `rows` pieces that must not mix (the faces of a cube) has levels only while
-    /// their sizes are even. The base is kept by reference. Throws std::bad_alloc.
+    /// An image of `columns` x `rows` pieces that must not mix (the faces of a cube) has levels only as long as the
+    /// sizes of the pieces are even. The base is kept by reference. Throws std::bad_alloc.
     explicit Pyramid(const Source& base, int columns = 1, int rows = 1);
     ~Pyramid() override;
     Pyramid(const Pyramid&) = delete;

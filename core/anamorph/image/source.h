@@ -7,7 +7,7 @@
 
 namespace anamorph {
 
-inline constexpr int kMaxSide = 1 << 20;  ///< pixels of a picture, either way
+inline constexpr int kMaxSide = 1 << 20;  ///< the largest width and height of a picture, in pixels
 
 class SummedAreas;
 
@@ -18,41 +18,41 @@ class Source {
 
     virtual PixelType type() const noexcept = 0;
     virtual int channels() const noexcept = 0;
-    /// The channel by which colour is to be weighted while filtering (alpha that is not yet multiplied in),
-    /// or -1: filter all channels as they are.
+    /// The channel by which colour is to be weighted while filtering (alpha that is not yet multiplied in); -1 where
+    /// all channels are to be filtered as they are.
     virtual int unassociated_alpha() const noexcept { return -1; }
     virtual int levels() const noexcept = 0;
     /// The size of a level.
     virtual Size size(int level) const noexcept = 0;
 
     /// Copies the texels of `box`, which lies inside the level, to `texels`: packed pixels of type(), rows
-    /// `row_stride` bytes apart. False when they cannot be had; the source keeps the reason for its owner.
+    /// `row_stride` bytes apart. False where they cannot be read; the source keeps the reason for its owner.
     virtual bool read(int level, const Box& box, std::byte* texels,
                       std::ptrdiff_t row_stride) const noexcept = 0;
 
-    /// The level's pixels when they stand in memory as a whole, else null. Only what prepare() has been asked
-    /// for need hold its texels.
+    /// The pixels of a level where they stand in memory as a whole, else null. Only boxes that prepare() was called for
+    /// are certain to hold their texels.
     virtual const ConstImageView* view(int level) const noexcept {
         static_cast<void>(level);
         return nullptr;
     }
 
     /// Makes the texels of `box`, which lies inside the level, ready to be read through view(level). False
-    /// when they cannot be had.
+    /// where they cannot be read.
     virtual bool prepare(int level, const Box& box) const noexcept {
         static_cast<void>(level), static_cast<void>(box);
         return true;
     }
 
-    /// The table of sums of level 0, made when it is first asked for and kept. Null where the source keeps none, or it
-    /// could not be made.
+    /// The summed-area table of level 0, made when it is first asked for and kept. Null where the source has none, or where
+    /// it could not be made.
     virtual const SummedAreas* summed_areas() const noexcept { return nullptr; }
 };
 
 /// An image in memory, not owned.
 class MemorySource final : public Source {
   public:
-    /// `unassociated_alpha`: as Source::unassociated_alpha().
+    /// `unassociated_alpha`: the result of Source::unassociated_alpha().
     explicit MemorySource(const ConstImageView& image, int unassociated_alpha = -1)
         : m_image(image), m_alpha(unassociated_alpha) {}
     PixelType type() const noexcept override { return m_image.type; }

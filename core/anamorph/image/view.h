@@ -9,16 +9,16 @@
 
 namespace anamorph {
 
-/// uint8 and uint16 stand for 0..1 (normalised), half is IEEE binary16.
+/// The type of a channel. uint8 and uint16 stand for 0 to 1 (normalised), half is IEEE binary16.
 enum class PixelType : std::uint8_t { uint8, uint16, half, float32 };
 
-/// Bytes of one channel.
+/// The size of one channel in bytes.
 constexpr int size_of(PixelType type) {
     return type == PixelType::uint8 ? 1 : type == PixelType::float32 ? 4 : 2;
 }
 
-/// `data` points at channel 0 of pixel (0, 0) of the view; the strides are in bytes and may be negative. The
-/// channels of a pixel stand next to each other.
+/// A view of pixels in memory. `data` points at channel 0 of pixel (0, 0) of the view; the strides are in bytes and may
+/// be negative. The channels of a pixel stand next to each other.
 template <class Byte>
 struct BasicView {
     Byte* data = nullptr;
@@ -26,15 +26,15 @@ struct BasicView {
     int width = 0, height = 0, channels = 0;
     std::ptrdiff_t pixel_stride = 0, row_stride = 0;
 
-    /// Channel 0 of pixel (x, y).
+    /// The address of channel 0 of pixel (x, y).
     Byte* at(std::ptrdiff_t x, std::ptrdiff_t y) const { return data + y * row_stride + x * pixel_stride; }
     /// Do pixels of a row follow each other without a gap?
     bool packed() const { return pixel_stride == std::ptrdiff_t{channels} * size_of(type); }
 };
 
-/// Pixels to write.
+/// A view of pixels to write.
 using ImageView = BasicView<std::byte>;
-/// Pixels to read.
+/// A view of pixels to read.
 using ConstImageView = BasicView<const std::byte>;
 
 /// A packed view of `data`.

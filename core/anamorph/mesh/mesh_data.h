@@ -16,23 +16,23 @@
 
 namespace anamorph {
 
-/// What positions are counted in: pixels, or the width and height of their image.
+/// The units of positions: pixels, or fractions of the width and height of their image.
 enum class Units { pixels, fractions };
 
-/// pull: the mesh lies in the target image, and its vertices say where in the source they come from. push:
-/// the mesh lies in the source image, and its vertices, which one drags, say where in the target they go.
+/// The direction of a mesh. pull: the mesh lies in the target image, and its vertices say where in the source they come
+/// from. push: the mesh lies in the source image, and its vertices, which one drags, say where in the target they go.
 enum class Direction { pull, push };
 
-/// The pixels of an ST-map: u and v of each, in fractions, row by row from the top left.
+/// The pixels of an ST-map: u and v of each pixel, in fractions, row by row from the top left.
 struct StSamples {
     std::vector<float> uv;
-    double most = 0;  ///< the largest magnitude of any of them
+    double most = 0;  ///< the largest magnitude in uv
 };
 
 /// A rectangular mesh of columns x rows cells, any of which may be subdivided into four, to any depth.
 struct ControlMesh {
     static constexpr int kMaxCells = 8192;        ///< columns and rows, each
-    static constexpr int kMaxVertices = 1 << 24;  ///< of all levels together
+    static constexpr int kMaxVertices = 1 << 24;  ///< vertices of all levels together
     static constexpr int kMaxLevels = 16;
     static constexpr double kMaxPosition = 1e8;  ///< pixels
 
@@ -41,11 +41,11 @@ struct ControlMesh {
     /// The size of the ST-map that the mesh was made of; 0 where there is none.
     int width = 0, height = 0;
     int columns = 1, rows = 1;
-    /// (columns + 1) (rows + 1) of them, row by row from the top left.
+    /// The (columns + 1) (rows + 1) vertices of level 0, row by row from the top left.
     std::vector<Point<double>> vertices;
     /// The vertices of an ST-map that is taken pixel for pixel; `vertices` is then empty.
     std::shared_ptr<const StSamples> samples;
-    /// Vertices that are given, in `vertices` or in `samples`.
+    /// The number of vertices of level 0, given in `vertices` or in `samples`.
     std::size_t vertex_count() const { return samples ? samples->uv.size() / 2 : vertices.size(); }
     /// Vertex i of level 0, from the top left.
     Point<double> vertex(std::size_t i) const {
@@ -88,7 +88,7 @@ struct ControlPoints {
     std::vector<Pair> pairs;
 };
 
-/// A warp as given. `name` stands in messages (a file's name).
+/// A warp as its author gives it. `name` is what messages call it (a file's name).
 struct WarpMap {
     std::string name = "mesh";
     std::variant<ControlMesh, ControlPoints> shape;

@@ -35,11 +35,11 @@
 
 namespace anamorph {
 
-/// A mesh or pairs of points, whichever the JSON text holds ("vertices" or "points").
+/// Reads a mesh or pairs of points, whichever the JSON text holds ("vertices" or "points").
 WarpMap parse_mesh_json(std::string_view text, std::string_view name);
-/// Pairs of points from CSV as above.
+/// Reads pairs of points in the CSV format described above.
 WarpMap parse_points_csv(std::string_view text, std::string_view name);
-/// Chooses by the end of the name: .csv, else JSON.
+/// Reads a warp in the format that the ending of the name says: CSV for .csv, else JSON.
 WarpMap parse_warp_file(std::string_view text, std::string_view name);
 
 /// So many pixels of an ST-map may be vertices.
@@ -47,7 +47,7 @@ inline constexpr int kMostStMapVertices = 1 << 28;
 /// An ST-map may have so many pixels either way.
 inline constexpr int kMostStMapSide = 1 << 20;
 
-/// A pull mesh from an ST-map: pixel (i, j) of an image of width x height says where in the source the centre
+/// Makes a pull mesh from an ST-map: pixel (i, j) of an image of width x height says where in the source the centre
 /// of that pixel (of an image that covers the target) comes from, as fractions (u right, v down, edge to
 /// edge). `uv` points at u of pixel (0, 0); v stands behind u, pixels `pixel_stride` and rows `row_stride`
 /// floats apart. Every `step`-th pixel is taken, and the last of each row and column; 1 takes all.

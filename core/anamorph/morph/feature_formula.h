@@ -27,14 +27,14 @@ inline T square_to_line(const T& before, const T& behind, const T& beside) {
     const T beyond = max(max(before, behind), T(0));
     return beyond * beyond + beside * beside;
 }
-/// dist itself.
+/// The distance dist of eq. 5.11, from the same arguments as square_to_line().
 template <class T>
 inline T distance_to_line(const T& before, const T& behind, const T& beside) {
     return root(square_to_line(before, behind, beside));
 }
 
-/// Eq. 5.10 less X, along one axis: how far the line moves the pixel. `origin`: at p; the rates: per unit of
-/// along and beside.
+/// The displacement of a pixel by one line, along one axis: eq. 5.10 less X. `origin`: the displacement at p; the rates:
+/// its increase per unit of along and beside.
 template <class T>
 inline T displacement_by_line(const T& origin, const T& along_rate, const T& along, const T& beside_rate,
                               const T& beside) {

@@ -27,7 +27,7 @@ struct Line {
     Point<double> p, q;
 };
 
-/// The lines that correspond in `shapes` pictures.
+/// Feature lines that correspond to each other in the pictures of all key shapes.
 class Features {
   public:
     /// A size in pixels.
@@ -41,34 +41,35 @@ class Features {
     int shapes() const { return m_shapes; }
     /// The number of lines.
     std::size_t size() const { return m_weights.size(); }
-    /// Line i as a shape has it.
+    /// Line i in the picture of a shape.
     const Line& line(std::size_t i, int shape) const {
         return m_lines[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
     }
-    /// A factor of the line's weight (eq. 5.11); 1 unless said.
+    /// The factor of the weight (eq. 5.11) of line i; 1 by default.
     double weight(std::size_t i) const { return m_weights[i]; }
-    /// What messages call the line: its name or "line 7" (the first is 1).
+    /// What messages call line i: its name or "line 7" (the first is 1).
     std::string name(std::size_t i) const;
 
-    /// `line`: one a shape. Throws Error, naming the line, when one has no length (in the pixels that it is
-    /// given in) or is not finite, and when the weight is not finite or below 0.
+    /// Adds a line, given once for each shape. Throws Error, naming the line, where one of them has no length (in the
+    /// pixels that it is given in) or is not finite, and where the weight is not finite or below 0.
     void add_line(const std::vector<Line>& line, double weight = 1, const std::string& name = {});
-    /// A chain of lines from vertex to vertex; as many vertices in every shape.
+    /// Adds a chain of lines from vertex to vertex, with as many vertices in every shape. Throws Error as add_line() does.
     void add_polyline(const std::vector<std::vector<Point<double>>>& vertices, double weight = 1,
                       const std::string& name = {});
-    /// Cubic Bezier segments, 3 n + 1 control points in every shape. Each segment becomes a chain of lines
-    /// between points at equal steps of its parameter, as many as keep every shape's chain within
-    /// kCurveDeviation of its curve, at most kMostCurveLines.
+    /// Adds a curve of cubic Bezier segments, with 3 n + 1 control points in every shape. Each segment becomes a chain of
+    /// lines between points at equal steps of its parameter, as many as keep every shape's chain within kCurveDeviation of
+    /// its curve, at most kMostCurveLines. Throws Error as add_line() does.
     void add_curve(const std::vector<std::vector<Point<double>>>& control_points, double weight = 1,
                    const std::string& name = {});
     static constexpr double kCurveDeviation = 0.25;  ///< pixels
     static constexpr int kMostCurveLines = 64;
 
-    /// Holds the picture's border: its four edges become lines of this weight in every shape. 0: not.
+    /// Pins the picture's border: its four edges become lines of this weight in every shape; 0: they do not. Throws Error
+    /// on a weight that is not finite or below 0.
     void pin_border(double weight);
     double border_weight() const { return m_border; }
 
-    /// The size of the picture for which a shape's lines are given; {0, 0}: whatever size the picture has.
+    /// The size of the picture for which a shape's lines are given; {0, 0}: any size that the picture has.
     Frame frame(int shape) const { return m_frames[static_cast<std::size_t>(shape)]; }
     /// Sets frame(). Throws Error unless the size is above 0 and at most 1e9 pixels either way.
     void set_frame(int shape, const Frame& frame);
@@ -101,10 +102,10 @@ inline T root(const T& square) {
     if (constant_part(square) == 0) return T(0);
     return sqrt(square);
 }
-/// Distances nearer than this count in units of it: its reciprocal, and the powers of what is nearer, are finite.
+/// The least distance by which others are divided: its reciprocal is finite, and so are the powers of smaller distances.
 inline constexpr double kLeastUnit = 1e-307;
 
-/// x^-b.
+/// The power x^-b.
 template <class T>
 inline T inverse_power(const T& x, double b) {
     using std::pow;
@@ -129,29 +130,29 @@ inline T inverse_power(const T& x, double b) {
 /// b, the weights are taken relative to the nearest line's: none overflows, and those that underflow are 0.
 class FeatureMap {
   public:
-    /// A line of the target and what it says: see feature_formula.h.
+    /// A line of the target and the numbers of its displacements (feature_formula.h).
     struct TargetLine {
-        Point<double> p, along;  ///< along: unit vector from p to q
+        Point<double> p, along;  ///< its first point, and the unit vector from there to the second one, q
         double length;
         double factor;  ///< weight * length^(p b), relative to the greatest of each
-        bool moves;     ///< not the same line in every shape
+        bool moves;     ///< it is not the same line in every shape
     };
-    /// What one line says for one shape, in the target's pixels.
+    /// The displacement by one line for one shape, in the target's pixels: at p, and its rates along and beside the line.
     struct Displacement {
         Point<double> origin, along_rate, beside_rate;
     };
-    /// How far the numbers of a line are off, which are doubles made of others.
+    /// Bounds of the rounding of a line's numbers, which are doubles computed from others.
     struct Rounding {
-        double place;    ///< its ends, in the target's pixels
-        double turn;     ///< its direction, and the rates of its displacements
-        double weight;   ///< its weight in proportion, but for the distance
+        double place;    ///< of its ends, in the target's pixels
+        double turn;     ///< of its direction, and of the rates of its displacements
+        double weight;   ///< of its weight without the distance, relative
         double stretch;  ///< no rounding: the greatest length in a shape over that in the target
-        bool exact;      ///< its ends p and q are not off at all
+        bool exact;      ///< its ends p and q are exact
         Point<double> q;
     };
 
-    /// `mixture`: the shapes' weights, with sum 1. Throws Error naming a line that has no length in the
-    /// target, and sizes or weights that do not fit.
+    /// `mixture`: the weights of the shapes, with sum 1. Throws Error naming a line that has no length in the target, and
+    /// on sizes or weights that are out of range or not as many as the shapes.
     FeatureMap(const Features& features, const std::vector<Size>& pictures, const Size& target,
                const std::vector<double>& mixture, const LineWeights& weights);
 
@@ -167,37 +168,37 @@ class FeatureMap {
     std::size_t size() const { return m_lines.size(); }
     /// Line i of the target.
     const TargetLine& line(std::size_t i) const { return m_lines[i]; }
-    /// What line i says for a shape.
+    /// The displacement by line i for a shape.
     const Displacement& displacement(std::size_t i, int shape) const {
         return m_displacements[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
     }
-    /// How far the numbers of line i are off.
+    /// Bounds of the rounding of the numbers of line i.
     const Rounding& rounding(std::size_t i) const { return m_roundings[i]; }
-    /// Does a line as the given numbers define it certainly pass through this point, to the last digit?
+    /// Does line i, as the features define it, certainly pass through this point exactly?
     bool passes_through(std::size_t i, double x, double y) const;
     /// Pixels of a shape's picture per pixel of the target.
     Point<double> scale(int shape) const { return m_scales[static_cast<std::size_t>(shape)]; }
 
-    /// The point of one shape's picture that is seen at (x, y) of the target.
+    /// The source point in one shape's picture of the target point (x, y).
     template <class T>
     Point<T> operator()(const T& x, const T& y, int shape) const;
-    /// The points of all shapes' pictures.
+    /// Finds the source points in all shapes' pictures of the target point (x, y); `points` has room for one a shape.
     template <class T>
     void all(const T& x, const T& y, Point<T>* points) const;
 
-    /// Where a point lies in a line's frame.
+    /// The position of a point along and beside a line, in pixels of the target.
     template <class T>
     struct Frame {
         T along, beside;
     };
-    /// Finds where a point lies along and beside a line.
+    /// Finds the position of a point along and beside a line.
     template <class T>
     Frame<T> frame(const TargetLine& line, const T& x, const T& y) const {
         const T dx = x - line.p.x, dy = y - line.p.y;
         return {feature_detail::along_line(dx, dy, line.along.x, line.along.y),
                 feature_detail::beside_line(dx, dy, line.along.x, line.along.y)};
     }
-    /// a + dist of eq. 5.11.
+    /// The sum a + dist of eq. 5.11.
     template <class T>
     T distance(const TargetLine& line, const Frame<T>& at) const {
         return feature_detail::distance_to_line<T>(-at.along, at.along - line.length, at.beside) +

@@ -39,16 +39,16 @@
 
 namespace anamorph {
 
-/// More lines than this are refused.
+/// The largest number of lines in a file; more are refused.
 inline constexpr std::size_t kMaxFeatures = std::size_t{1} << 17;
 
-/// Reads JSON as above.
+/// Reads features in the JSON format described above.
 Features parse_features_json(std::string_view text, std::string_view name);
-/// Reads CSV as above.
+/// Reads features in the CSV format described above.
 Features parse_features_csv(std::string_view text, std::string_view name);
-/// Reads SVG as above.
+/// Reads features from SVG as described above.
 Features parse_features_svg(std::string_view text, std::string_view name);
-/// Chooses by the end of the name: .csv, .svg, else JSON.
+/// Reads features in the format that the ending of the name says: CSV for .csv, SVG for .svg, else JSON.
 Features parse_features_file(std::string_view text, std::string_view name);
 
 /// Checks how many lines there are. Throws Error naming the entry of the file that is one line too many.

@@ -24,6 +24,7 @@
 
 namespace anamorph {
 
+/// A closed interval of real numbers, from lo to hi.
 struct Interval {
     double lo = 0;
     double hi = 0;
@@ -57,26 +58,26 @@ inline bool operator>=(const Interval& a, const Interval& b) {
 
 namespace interval_detail {
 
-/// The spacing of doubles, relative to their magnitude: at most this, at least half of it.
+/// The largest spacing of doubles, relative to their magnitude; the smallest is half of it.
 inline constexpr double kUlp = std::numeric_limits<double>::epsilon();
-/// What libm's functions may be off, relative to the value.
+/// The largest error of libm's functions, relative to the value.
 inline constexpr double kLibmError = 4 * kUlp;
 inline constexpr double kLibmMargin = 2 * kLibmError;
 /// The smallest normal number.
 inline constexpr double kSmallest = std::numeric_limits<double>::min();
 inline constexpr double kLargest = std::numeric_limits<double>::max();
 
-/// [lo, hi] widened by `relative` of each end's magnitude. An end of exactly 0 stays.
+/// Widens [lo, hi] by `relative` of each end's magnitude. An end of exactly 0 stays.
 inline Interval widen(double lo, double hi, double relative = kUlp) {
     return {lo - std::fabs(lo) * relative, hi + std::fabs(hi) * relative};
 }
 
-/// Has an end lost digits to underflow?
+/// May an end of the interval have lost digits to underflow?
 inline bool underflows(const Interval& a) {
     return std::fabs(a.lo) < 4 * kSmallest || std::fabs(a.hi) < 4 * kSmallest;
 }
 
-/// The values of a function of libm that is 0 only where its argument is.
+/// Encloses the values of a function of libm that is 0 only where its argument is, given those that libm returns.
 inline Interval libm(double lo, double hi) {
     Interval r = widen(lo, hi, kLibmMargin);
     if (underflows(r)) {
@@ -99,7 +100,7 @@ inline Interval operator-(const Interval& a, const Interval& b) {
 }
 namespace interval_detail {
 
-/// a b where one of the four products of ends is 0 or nearly so: each with its own margin.
+/// The product a b where one of the four products of ends is 0 or nearly so; each of them has its own margin.
 inline Interval small_product(const Interval& a, const Interval& b) {
     Interval r{kLargest, -kLargest};
     for (const double x : {a.lo, a.hi})
@@ -228,7 +229,7 @@ inline Interval exp(const Interval& a) {
     r.lo = r.lo < 0 ? 0 : r.lo;
     return r;
 }
-/// -inf at 0.
+/// The logarithm; its end is -inf at 0.
 inline Interval log(const Interval& a) {
     return interval_detail::libm(std::log(a.lo), std::log(a.hi));
 }
@@ -303,12 +304,12 @@ inline Certainty both(Certainty a, Certainty b) {
 inline Certainty both(bool a, Certainty b) {
     return a ? b : Certainty::no;
 }
-/// Members of both.
+/// The smallest interval that holds both intervals.
 inline Interval hull(const Interval& a, const Interval& b) {
     if (std::isnan(a.lo + a.hi + b.lo + b.hi)) return Interval::all();
     return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
-/// What `a` or `b` is where the condition is not known.
+/// Selects a where the condition holds and b where it does not; where it is not known, encloses both.
 template <class T>
 T select(Certainty condition, const T& a, const T& b) {
     return condition == Certainty::yes ? a : condition == Certainty::no ? b : hull(a, b);

@@ -27,10 +27,12 @@ namespace anamorph {
 #define ANAMORPH_UNROLLED
 #endif
 
-/// The degree of a jet as a polynomial is seen (jet_detail::degree_of).
+/// The base class of jets of T. It is empty: their degree as polynomials is found from their coefficients
+/// (jet_detail::degree_of).
 template <class T>
 struct ToldDegree {};
-/// Recurrences are unrolled, but for long ones of intervals, which would be no faster.
+/// The number of steps of a recurrence: a constant where it is unrolled. Long ones of intervals are not, as they would be
+/// no faster.
 template <class T, int N>
 inline constexpr std::integral_constant<int, N> kJetSteps{};
 template <int N>
@@ -52,7 +54,7 @@ inline Jet<T, N> sinh(const Jet<T, N>& a) {
     return s;
 }
 
-/// The constant part of a jet; a plain number is its own.
+/// The constant part of a jet; that of a plain number is the number itself.
 template <class T, int N>
 inline const T& constant_part(const Jet<T, N>& a) {
     return a.c[0];
@@ -67,7 +69,7 @@ inline const Interval& constant_part(const Interval& a) {
     return a;
 }
 
-/// The least member.
+/// The least member of an interval; that of a plain number is the number itself.
 inline double lower_end(double a) {
     return a;
 }
@@ -111,8 +113,8 @@ double enlarger(const Jet<T, N>& a, const Jet<T, N>& b) {
     return enlarger(a.c[0], b.c[0]);
 }
 
-/// The polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated division;
-/// coefficient(j) refers to that of degree j.
+/// Rewrites a polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated synthetic division;
+/// coefficient(j) refers to the coefficient of degree j.
 template <int Degree, class Coefficient>
 ANAMORPH_UNROLLED inline void taylor_shift(double shift, double scale, const Coefficient& coefficient) {
     double power = 1;
@@ -125,8 +127,8 @@ ANAMORPH_UNROLLED inline void taylor_shift(double shift, double scale, const Coe
     });
 }
 
-/// f(shift_s + scale_s s, shift_t + scale_t t): from the offsets in a box to those in a part of it. A scale
-/// of 1 stands for the whole side, with no shift.
+/// The jet of f(shift_s + scale_s s, shift_t + scale_t t), which turns a polynomial over a box into one over a part of it.
+/// A scale of 1 stands for the whole side, with no shift.
 template <int N>
 Jet<double, N> on_part(Jet<double, N> f, double shift_s, double scale_s, double shift_t, double scale_t) {
     using J = Jet<double, N>;

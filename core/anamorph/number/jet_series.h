@@ -12,10 +12,10 @@ struct Jet : ToldDegree<T> {
     static constexpr int kSize = (N + 1) * (N + 2) / 2;
     static constexpr bool kIsTold = !std::is_empty_v<ToldDegree<T>>;
 
-    /// Degree by degree; within degree k the coefficient of s^(k-j) t^j stands at k (k + 1) / 2 + j.
+    /// The coefficients, degree by degree; that of s^(k-j) t^j stands at k (k + 1) / 2 + j.
     T c[kSize];
 
-    /// Zero; not yet anything, where degrees are told.
+    /// Constructs zero; where degrees are told, the coefficients are not set.
     Jet() {
         if constexpr (!kIsTold)
             for (T& k : c) k = T(0);
@@ -27,7 +27,7 @@ struct Jet : ToldDegree<T> {
         c[0] = T(constant);
     }
 
-    /// value + ds * s + dt * t
+    /// The jet value + ds * s + dt * t.
     static Jet variable(const T& value, const T& ds, const T& dt) {
         Jet r(value);
         r.c[1] = ds;
@@ -76,7 +76,7 @@ constexpr int half(int count) {
     return count / 2;
 }
 
-/// body(0), ..., body(count - 1): each with its index as a constant where the count is one.
+/// Calls body(0), ..., body(count - 1), each with its index as a constant where the count is a constant.
 template <int Count, class Body>
 ANAMORPH_UNROLLED inline void unroll(CountOf<Count>, const Body& body) {
     [&]<int... I>(std::integer_sequence<int, I...>) ANAMORPH_UNROLLED {
@@ -88,7 +88,7 @@ template <class Body>
 ANAMORPH_UNROLLED inline void unroll(int count, const Body& body) {
     for (int i = 0; i < count; ++i) body(i);
 }
-/// body(i) for 0 <= i <= a with 0 <= m - i <= b.
+/// Calls body(i) for 0 <= i <= a with 0 <= m - i <= b.
 template <int A, int B, int M, class Body>
 ANAMORPH_UNROLLED inline void each_split(CountOf<A>, CountOf<B>, CountOf<M>, const Body& body) {
     constexpr int kFirst = std::max(0, M - B), kLast = std::min(A, M);
@@ -99,7 +99,7 @@ ANAMORPH_UNROLLED inline void each_split(int a, int b, int m, const Body& body) 
     for (int i = std::max(0, m - b); i <= std::min(a, m); ++i) body(i);
 }
 
-/// A number that is all between two ends.
+/// A number that stands for all numbers between two ends, such as an interval.
 template <class T>
 concept Enclosure = requires(const T& a) {
     a.lo;
@@ -109,7 +109,7 @@ concept Enclosure = requires(const T& a) {
 /// A sum of products.
 template <class T>
 struct ProductSum {
-    using Term = T;  ///< what of a factor is multiplied
+    using Term = T;  ///< what a factor contributes to its products
     T sum;
 
     ANAMORPH_UNROLLED ProductSum() : sum(0) {}
@@ -154,7 +154,7 @@ struct ProductSum<T> {
         middle_size = middle_size + part.middle_size * std::abs(weight);
         size = size + part.size * std::abs(weight);
     }
-    /// Unbounded where a factor is, or nearly so.
+    /// The sum as an interval; unbounded where a factor is, or nearly so.
     ANAMORPH_UNROLLED T value() const {
         const auto bounded = middle_size + size < R(0x1p1000);
         const R radius =
@@ -165,8 +165,8 @@ struct ProductSum<T> {
     }
 };
 
-/// The degree of a jet as a polynomial: parts above are zero. Constants, lines and their squares are mostly zeros,
-/// and gain by its being known.
+/// The degree of a jet as a polynomial: parts above are zero. Operations on constants, lines and their squares, which are
+/// mostly zeros, are faster where it is known.
 template <class T, int N>
 int degree_of(const Jet<T, N>& jet) {
     int degree = N;
@@ -183,7 +183,7 @@ void tell_degree(Jet<T, N>& jet, int degree) {
     if constexpr (requires { jet.degree; }) jet.degree = degree < N ? degree : N;
 }
 
-/// How many coefficients are worth an operation of their own: of intervals, those of the degree.
+/// The number of coefficients that are operated on: all of them, but of intervals those up to the jet's degree.
 template <class T, int N>
 int terms(const Jet<T, N>& jet) {
     return Enclosure<T> ? Jet<T, N>::part(degree_of(jet) + 1) : Jet<T, N>::kSize;
@@ -196,7 +196,8 @@ struct Factor {
     int degree;
 
     explicit Factor(const Jet<T, N>& known) : jet(known), degree(degree_of(known)) {}
-    /// A jet of which more than the constant part is to come: each coefficient is told to grow() when it is there.
+    /// The factor of a jet of which only the constant part is known yet; grow() is called for each other coefficient once it is
+    /// computed.
     static Factor growing(const Jet<T, N>& jet) { return Factor(jet, N); }
     ANAMORPH_UNROLLED void grow(int) {}
 
@@ -226,7 +227,7 @@ struct Factor<T, N> {
     Term m_terms[Jet<T, N>::kSize];
 };
 
-/// Coefficient m of the part of degree k of sum_(first <= a <= last) weight(a) f_a g_(k-a).
+/// Computes coefficient m of the part of degree k of sum_(first <= a <= last) weight(a) f_a g_(k-a).
 template <class K, class First, class Last, class T, int N, class M, class Weight>
 ANAMORPH_UNROLLED inline T convolve(K k, First first, Last last, const Factor<T, N>& f, const Factor<T, N>& g,
                                     M m, const Weight& weight) {
@@ -246,7 +247,7 @@ ANAMORPH_UNROLLED inline T convolve(K k, First first, Last last, const Factor<T,
     return sums.value();
 }
 
-/// body(k, m) for the coefficients m of the parts of degree k = 1 ... N, part by part.
+/// Calls body(k, m) for the coefficients m of the parts of degree k = 1 ... N, part by part.
 template <class T, int N, class Body>
 ANAMORPH_UNROLLED inline void each_coefficient(const Body& body) {
     unroll(kJetSteps<T, N>, [&](auto below) ANAMORPH_UNROLLED {
@@ -271,7 +272,7 @@ inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>
     });
 }
 
-/// x E y - y E x, whose part of degree k is sum_a (k - 2 a) x_a y_(k-a).
+/// The jet x E y - y E x, whose part of degree k is sum_a (k - 2 a) x_a y_(k-a).
 template <class T, int N>
 inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
     Jet<T, N> r;
@@ -284,7 +285,7 @@ inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
     return r;
 }
 
-/// All complex numbers within `radius` of a middle, whose magnitude is at most `size`, but for two units of it.
+/// A disc of complex numbers: those within `radius` of a middle, whose magnitude is at most `size`, but for two units of it.
 template <class R>
 struct Disc {
     R re, im, radius, size;
@@ -292,8 +293,8 @@ struct Disc {
     Disc() = default;
     ANAMORPH_UNROLLED Disc(const R& real, const R& imaginary, const R& around)
         : re(real), im(imaginary), radius(around), size(longest(real, imaginary)) {}
-    /// Around a rectangle: margins of 8 units of 2^-53, where a middle is rounded by one, half a side by one and longest()
-    /// by two.
+    /// The disc around a rectangle, with margins of 8 units of 2^-53: a middle is rounded by one, half a side by one and
+    /// longest() by two.
     template <Enclosure T>
     static ANAMORPH_UNROLLED Disc around(const T& real, const T& imaginary) {
         const R half = longest(R((real.hi - real.lo) * 0.5), R((imaginary.hi - imaginary.lo) * 0.5));
@@ -301,7 +302,7 @@ struct Disc {
         d.radius = half + d.reach() * 0x1p-50;
         return d;
     }
-    /// The inverses: a disc about c / (|c|^2 - r^2), c conjugate, of radius r / (|c|^2 - r^2). The divisor is off by 5
+    /// The disc of the inverses: about c / (|c|^2 - r^2), c conjugate, with radius r / (|c|^2 - r^2). The divisor is off by 5
     /// units of |c|^2 at most, a part of 2^-10 of it where it is known, and both results by as many of its own and three
     /// roundings more.
     ANAMORPH_UNROLLED Disc inverse() const {
@@ -312,11 +313,12 @@ struct Disc {
         d.radius = select(known, R(d.radius + d.reach() * (squared * scale) * 0x1p-46), R(HUGE_VAL));
         return d;
     }
-    /// No less than any member's magnitude.
+    /// An upper bound of the magnitudes of all members.
     ANAMORPH_UNROLLED R reach() const { return size + radius; }
 
   private:
-    /// No less than a hypotenuse, which is convex in the quotient of its sides and as long at both ends, 0 and 1.
+    /// An upper bound of the hypotenuse of a and b, which is convex in the quotient of its sides and as long as the bound at
+    /// both ends, 0 and 1.
     static ANAMORPH_UNROLLED R longest(const R& a, const R& b) {
         using std::abs;
         const R p = abs(a), q = abs(b);
@@ -346,7 +348,7 @@ struct DiscSum {
     ANAMORPH_UNROLLED Disc<R> value() const { return {re, im, radius()}; }
 };
 
-/// k z less a sum, of k = 0 without z: rounded three times, with a margin of 8 units.
+/// The disc k z less a sum, for k = 0 without z: rounded three times, with a margin of 8 units.
 template <class R>
 ANAMORPH_UNROLLED inline Disc<R> less_sum(int k, const Disc<R>& z, const DiscSum<R>& sum) {
     if (k == 0) return {R(-sum.re), R(-sum.im), sum.radius()};
@@ -355,7 +357,7 @@ ANAMORPH_UNROLLED inline Disc<R> less_sum(int k, const Disc<R>& z, const DiscSum
     return d;
 }
 
-/// The parts above the constant one of the angle of z = x + i y, the imaginary part of its logarithm: with e = E log z,
+/// Finds the parts above the constant one of the angle of z = x + i y, the imaginary part of its logarithm: with e = E log z,
 /// z_0 e_k = k z_k - sum_(0<j<k) e_j z_(k-j). Discs turn as they are multiplied and grow by their radii alone, so that
 /// over wide boxes they are many times narrower than quotients of wronskian(x, y).
 template <Enclosure T, int N>
@@ -383,7 +385,7 @@ inline void integrate_logarithm(Jet<T, N>& g, const Jet<T, N>& y, const Jet<T, N
         }
 }
 
-/// E f: the part of degree k times k.
+/// The jet E f, whose part of degree k is that of f times k.
 template <class T, int N>
 inline Jet<T, N> euler(const Jet<T, N>& f) {
     Jet<T, N> r;
@@ -395,7 +397,7 @@ inline Jet<T, N> euler(const Jet<T, N>& f) {
     return r;
 }
 
-/// E u = v E a and E v = Sign * u E a: sine and cosine (Sign -1), or their hyperbolic twins (Sign 1).
+/// Solves E u = v E a and E v = Sign * u E a for sine and cosine (Sign -1), or the hyperbolic ones (Sign 1).
 template <int Sign, class T, int N>
 inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
     const Factor<T, N> angle(a);
@@ -482,7 +484,7 @@ inline Jet<T, N> operator-(double a, const Jet<T, N>& b) {
     return -b + a;
 }
 
-/// q with q g = f: g_0 q_k = f_k - sum_(j<k) q_j g_(k-j)
+/// The quotient q with q g = f: g_0 q_k = f_k - sum_(j<k) q_j g_(k-j).
 template <class T, int N>
 inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     const T inverse = T(1) / g.c[0];
@@ -499,8 +501,8 @@ inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     return q;
 }
 
-/// sum_k c_k f^k for k = 0 ... N, of f less its constant part: by Horner's rule. Of what is multiplied by f another n
-/// times, the parts up to degree N - n count.
+/// The sum of c_k f^k for k = 0 ... N, with f less its constant part, by Horner's rule. A sum that is still to be
+/// multiplied by f n times is needed up to degree N - n only.
 template <class T, int N>
 inline Jet<T, N> compose(const T* c, const Jet<T, N>& f) {
     Jet<T, N> r(c[N]);
@@ -520,7 +522,7 @@ inline Jet<T, N> compose(const T* c, const Jet<T, N>& f) {
     return r;
 }
 
-/// a a, with a constant part that is never negative.
+/// The square of a, with a constant part that is never negative.
 template <class T, int N>
 inline Jet<T, N> square(const Jet<T, N>& a) {
     Jet<T, N> r(square(a.c[0]));
@@ -535,7 +537,7 @@ inline Jet<T, N> square(const Jet<T, N>& a) {
     return r;
 }
 
-/// r with r r = f: 2 r_0 r_k = f_k - sum_(0<j<k) r_j r_(k-j)
+/// The root r with r r = f: 2 r_0 r_k = f_k - sum_(0<j<k) r_j r_(k-j).
 template <class T, int N>
 inline Jet<T, N> sqrt(const Jet<T, N>& f) {
     using std::sqrt;
@@ -561,7 +563,7 @@ inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c) {
     jet_detail::oscillate<-1>(s, c, a);
 }
 
-/// E g = g E a, so k g_k = sum_(0<j<=k) j a_j g_(k-j)
+/// The exponential g = exp(a): E g = g E a, so that k g_k = sum_(0<j<=k) j a_j g_(k-j).
 template <class T, int N>
 inline Jet<T, N> exp(const Jet<T, N>& a) {
     using std::exp;
@@ -577,7 +579,7 @@ inline Jet<T, N> exp(const Jet<T, N>& a) {
     return g;
 }
 
-/// a E g = E a
+/// The logarithm g = log(a), by a E g = E a.
 template <class T, int N>
 inline Jet<T, N> log(const Jet<T, N>& a) {
     using std::log;
@@ -586,7 +588,7 @@ inline Jet<T, N> log(const Jet<T, N>& a) {
     return g;
 }
 
-/// Over cosh of a's constant part.
+/// Writes sinh(a) into s and returns 1, both over cosh of a's constant part.
 template <class T, int N>
 inline T scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s) {
     T sine;
@@ -597,7 +599,7 @@ inline T scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s) {
     return one;
 }
 
-/// E g sqrt(1 + a^2) = E a
+/// The inverse hyperbolic sine g = asinh(a), by E g sqrt(1 + a^2) = E a.
 template <class T, int N>
 inline Jet<T, N> asinh(const Jet<T, N>& a) {
     using std::asinh;
@@ -606,7 +608,7 @@ inline Jet<T, N> asinh(const Jet<T, N>& a) {
     return g;
 }
 
-/// The angle of a + i b is the imaginary part of the logarithm.
+/// The angle of x + i y, which is the imaginary part of its logarithm.
 template <class T, int N>
 inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x) {
     using std::atan2;

@@ -64,7 +64,8 @@ template <std::floating_point T>
 T without_hair(T a) {
     return a < 0 && a > static_cast<T>(-0x1p-38) ? 0 : a;
 }
-/// scaled_sinh() returns no less, of which products do not underflow: what it scales keeps its direction.
+/// The least value that scaled_sinh() returns: its products do not underflow, so that a vector scaled by it keeps its
+/// direction.
 inline constexpr double kLeastScale = 0x1p-960;
 template <std::floating_point T>
 T scaled_sinh(T a, T& s) {
@@ -72,7 +73,7 @@ T scaled_sinh(T a, T& s) {
     s = std::tanh(a);
     return std::max(1 / std::cosh(a), kLong ? static_cast<T>(0x1p-16000L) : static_cast<T>(kLeastScale));
 }
-/// What a and b are to be multiplied with so that their squares do not underflow.
+/// A factor of a and b so that their squares do not underflow.
 template <std::floating_point T>
 double enlarger(T a, T b) {
     return std::fabs(a) < 0x1p-400 && std::fabs(b) < 0x1p-400 ? 0x1p500 : 1;
@@ -85,7 +86,7 @@ inline bool both(bool a, bool b) {
     return a && b;
 }
 
-/// The list above.
+/// A number that offers the list at the head of this file.
 template <class T>
 concept FormulaNumber = requires(const T& a, const T& b, T& to, double k) {
     T(k);

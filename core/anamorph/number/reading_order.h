@@ -7,7 +7,7 @@
 
 namespace anamorph {
 
-/// What makes a base, or takes one.
+/// The operations of a formula that yield a base, or read one.
 enum class BaseOperation : std::uint8_t {
     input,
     output,
@@ -30,8 +30,8 @@ enum class BaseOperation : std::uint8_t {
     choice
 };
 
-/// The operations so far, in the order in which they were done: each is numbered, and its entry in the sum is what it is and
-/// the numbers of its operands.
+/// A checksum of the operations so far, in the order in which they were done: each is numbered, and its entry in the sum is
+/// the kind of operation and the numbers of its operands.
 class ReadingOrder {
   public:
     /// The number of an operation's first result; 0 for a constant.
@@ -46,8 +46,8 @@ class ReadingOrder {
     }
     constexpr std::uint64_t sum() const { return m_sum; }
 
-    /// One sum for two. For either that is given it is one to one in the other, so that a single difference is never lost; of
-    /// several one in 2^64 is.
+    /// Joins two sums in one. With either of them fixed it is one to one in the other, so that a single difference is never
+    /// lost; of several differences one in 2^64 is.
     static constexpr std::uint64_t joined(std::uint64_t first, std::uint64_t second) {
         return (std::rotl(first, 27) ^ second) * 0x9e3779b97f4a7c15u;
     }

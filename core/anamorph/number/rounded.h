@@ -45,13 +45,15 @@ Rounded<Real> quotient(const Rounded<Real>& f, const Rounded<Real>& g);
 
 template <class Real>
 struct Rounded {
-    /// Half the spacing of Real's numbers, relative.
+    /// The unit roundoff of Real: half the spacing of its numbers, relative to their magnitude.
     static constexpr double kUnit = static_cast<double>(std::numeric_limits<Real>::epsilon() / 2);
-    /// What libm's functions may be off, relative to the value, as in number/interval.h.
+    /// The largest error of libm's functions, relative to the value, as in number/interval.h.
     static constexpr double kLibm = 8 * kUnit;
-    /// The largest underflow. (A double's is above long double's.)
+    /// The largest error of an underflow. (That of double is above that of long double.)
     static constexpr double kLeast =
         std::is_same_v<Real, float> ? double{std::numeric_limits<float>::min()} : interval_detail::kSmallest;
+    /// The rounding of a coefficient relative to the sum of magnitudes of its products.
+    ///
     /// Jets have degree 4 at most. The longest sum in a coefficient, that of s^2 t^2, has 9 products; on its
     /// way each meets a product's rounding, at most 4 sums in its part, a weight's and 5 sums of parts. Then
     /// follow a difference and two products at most.
@@ -73,7 +75,7 @@ struct Rounded {
                           : Rounded(Interval(value - 2 * bound, value + 2 * bound), 0, bound);
     }
 
-    /// Largest norm of the exact jets, and of the computed ones.
+    /// The largest norm of the exact jets; computed_size() is that of the computed ones.
     double size() const { return magnitude(range) + radius; }
     double computed_size() const { return size() + error; }
     bool is_jet() const { return radius != 0; }
@@ -91,7 +93,7 @@ namespace rounded_detail {
 /// The sums and products that make up a bound are themselves rounded, fewer than 32 times, all of one sign.
 inline constexpr double kUp = 1 + 64 * 0x1p-53;
 
-/// A result of the given exact values that was off by `error` before it was rounded by `unit` of its size.
+/// The Rounded of the given exact values, computed with an error of `error` before it was rounded by `unit` of its size.
 template <class Real>
 Rounded<Real> result(const Interval& range, double radius, double error, double unit) {
     using R = Rounded<Real>;
@@ -106,13 +108,13 @@ Rounded<Real> result(const Interval& range, double radius, double error, double 
     return r;
 }
 
-/// The least magnitude of a member.
+/// The least magnitude of a member of an interval.
 inline double least_magnitude(const Interval& a) {
     return a.lo > 0 ? a.lo : a.hi < 0 ? -a.hi : 0;
 }
 
-/// What recurrences add to functions that solve E u = v E a, E v = -+ u E a, E the operator that multiplies
-/// degree k by k: u and v are sums of exp(+-c a), c = 1 or i, each of norm at most exp(r) relative to its
+/// The error that recurrences add to functions that solve E u = v E a, E v = -+ u E a, where E multiplies the part of
+/// degree k by k. u and v are sums of exp(+-c a), c = 1 or i, each of norm at most exp(r) relative to its
 /// constant part; the residual of the equations is kSum kDegree r exp(r) for each, and it is divided by u + c v
 /// and multiplied by it again.
 template <class Real>
@@ -140,7 +142,7 @@ Rounded<Real> product(const Rounded<Real>& a, const Rounded<Real>& b) {
                             unit * a.computed_size() * b.computed_size(),
                         0);
 }
-/// f = q g + residual
+/// The quotient q of f = q g + residual.
 template <class Real>
 Rounded<Real> quotient(const Rounded<Real>& f, const Rounded<Real>& g) {
     using R = Rounded<Real>;
@@ -165,7 +167,7 @@ Rounded<Real> square(const Rounded<Real>& a) {
     r.range = square(a.range);
     return r;
 }
-/// r r = f + residual
+/// The root r of r r = f + residual.
 template <class Real>
 Rounded<Real> sqrt(const Rounded<Real>& f) {
     using R = Rounded<Real>;
@@ -214,7 +216,7 @@ Rounded<Real> scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s) {
     // |sech'| <= sech
     return rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm) + least, 2 * R::kUnit);
 }
-/// E g = g E a. |e^b - e^a| <= |e^a| (e^|b - a| - 1), and |e^n| <= e^|n|. The residual of the equation is
+/// The exponential g, by E g = g E a. |e^b - e^a| <= |e^a| (e^|b - a| - 1), and |e^n| <= e^|n|. The residual of the equation is
 /// kSum kDegree r e^r; over e^a and times it again that is less than what two such equations add up to.
 template <class Real>
 Rounded<Real> exp(const Rounded<Real>& a) {
@@ -225,7 +227,7 @@ Rounded<Real> exp(const Rounded<Real>& a) {
         grown * (std::expm1(a.error) + R::kLibm) + rounded_detail::oscillation_error<Real>(a.radius);
     return rounded_detail::result<Real>(range, most * (grown - 1), most * relative, 0);
 }
-/// E g = E a / a. Of the constant parts, |log b - log a| <= |b - a| over the lesser of both.
+/// The logarithm g, by E g = E a / a. For the constant parts, |log b - log a| <= |b - a| over the lesser of both.
 template <class Real>
 Rounded<Real> log(const Rounded<Real>& a) {
     using R = Rounded<Real>;
@@ -240,7 +242,7 @@ Rounded<Real> log(const Rounded<Real>& a) {
     }
     return rounded_detail::result<Real>(range, a.radius / least, error, 0);
 }
-/// sqrt(1 + a^2) E g = E a
+/// The inverse hyperbolic sine g, by sqrt(1 + a^2) E g = E a.
 template <class Real>
 Rounded<Real> asinh(const Rounded<Real>& a) {
     using R = Rounded<Real>;
@@ -263,7 +265,7 @@ Rounded<Real> asinh(const Rounded<Real>& a) {
     }
     return rounded_detail::result<Real>(range, slope * a.radius, error, 0);
 }
-/// With z = x + i y: the angle is Im log z, and z conj(z) E g = x E y - y E x.
+/// The angle g of z = x + i y: g = Im log z, and z conj(z) E g = x E y - y E x.
 template <class Real>
 Rounded<Real> atan2(const Rounded<Real>& y, const Rounded<Real>& x) {
     using R = Rounded<Real>;
@@ -330,7 +332,7 @@ Rounded<Real> hull(const Rounded<Real>& a, const Rounded<Real>& b) {
     return {hull(a.range, b.range), rounded_detail::larger(a.radius, b.radius),
             rounded_detail::larger(a.error, b.error)};
 }
-/// No further off than the one that is further off.
+/// The lesser of two numbers; its error is at most the larger of both errors.
 template <class Real>
 Rounded<Real> min(const Rounded<Real>& a, const Rounded<Real>& b) {
     Rounded<Real> r = hull(a, b);
@@ -344,7 +346,7 @@ Rounded<Real> max(const Rounded<Real>& a, const Rounded<Real>& b) {
     return r;
 }
 
-/// A double that stands for a value at most `error` away, as formulas compute with it.
+/// The number, in formulas read with T, of a double that is at most `error` from the exact value.
 template <class T>
 auto measured(double value, double error) {
     if constexpr (requires { T::near(value, error); })
@@ -358,7 +360,7 @@ auto measured(double value, double error) {
 class Constant {
   public:
     Constant() = default;
-    /// `value` is off by `error` at most; 0 is taken to be exact.
+    /// `value` has an error of at most `error`; the value 0 is taken to be exact.
     Constant(long double value, double error)
         : m_precise(value),
           m_value(static_cast<double>(value)),
@@ -371,7 +373,7 @@ class Constant {
     double value() const { return m_value; }
     long double precise() const { return m_precise; }
 
-    /// What a formula that is read with T computes with.
+    /// The number that stands for the constant in a formula that is read with T.
     template <class T>
     auto as() const {
         if constexpr (std::is_same_v<T, long double>)

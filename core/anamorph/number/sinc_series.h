@@ -11,21 +11,22 @@
 
 namespace anamorph {
 
-/// 1 / n!, to within n units.
+/// The inverse factorial 1 / n!, to within n units.
 constexpr double inverse_factorial(int n) {
     double product = 1;
     for (int k = 2; k <= n; ++k) product /= k;
     return product;
 }
 
-/// The degree of the series of sinc_cos() that a block is read with: what is left out is little up to t^2 = 1.
+/// The degree of the series of sinc_cos() with which a block is read: the truncation error is small up to t^2 = 1.
 template <class Real>
 inline constexpr int sinc_degree = std::is_same_v<Real, float> ? 4 : 7;
 
-/// Coefficient k of the first is off by up to so many units of 1 / (2 k + 1)!, of the second of 1 / (2 k)!.
+/// The largest error of coefficient k of sinc_cos_series(): so many units of 1 / (2 k + 1)! in s, of 1 / (2 k)! in c.
 inline constexpr double kSincUnits = 256;
 
-/// The first coefficients about a, from 0 to 10, of the series of sin t / t and cos t in powers of t^2; NaN beyond.
+/// Finds the first N coefficients of the series of sin t / t (s) and cos t (c) in powers of t^2 about t^2 = a, for a from 0
+/// to 10; NaN beyond.
 ///
 /// Coefficient k of the first is the sum of (-1)^(k + m) (m + k)! / (m! k! (2 (m + k) + 1)!) a^m, by Horner's rule. With r
 /// the root of a, the magnitudes add up to at most sinh(r) / r, below 3.8, times 1 / (2 k + 1)!; each of the 16 terms meets at

@@ -14,18 +14,18 @@ namespace anamorph {
 /// A file. With an identity, which tells its states apart, what was read of it is kept.
 struct SideFile {
     std::string name, identity;
-    bool image = false;  ///< it is opened as an image, and so may be a recipe
+    bool image = false;  ///< the file is opened as an image, and so may be a recipe
 };
-using SideFiles = std::map<std::string, SideFile>;  ///< by key; those that were given
+using SideFiles = std::map<std::string, SideFile>;  ///< the side files that were given, by parameter
 
-/// An image whose pixels are numbers, open.
+/// An open image whose pixels are numbers.
 class SideImage {
   public:
     virtual ~SideImage() = default;
     /// The size of the image as it is seen upright.
     virtual Size size() const = 0;
     virtual int channels() const = 0;
-    /// The first `count` channels of all pixels, row by row, packed. Throws Error.
+    /// Reads the first `count` channels of all pixels, row by row, packed. Throws Error where they cannot be read.
     virtual std::vector<float> read(int count) = 0;
 };
 
@@ -33,14 +33,15 @@ class SideImage {
 class SideFileReader {
   public:
     virtual ~SideFileReader() = default;
-    /// The whole of a text file. Throws Error, also where it is longer than text_file::kMostBytes.
+    /// Reads the whole of a text file. Throws Error where it cannot be read or is longer than text_file::kMostBytes.
     virtual std::string text(const std::string& name) const = 0;
     /// Is there a file of that name?
     virtual bool exists(const std::string& name) const {
         static_cast<void>(name);
         return false;
     }
-    /// `key`: the parameter that names it, for messages. Throws Error, also where it is not a flat image.
+    /// Opens an image. `key`: the parameter that names it, for messages. Throws Error where it cannot be opened or is not a
+    /// flat image.
     virtual std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const = 0;
 };
 

@@ -12,29 +12,29 @@
 
 namespace anamorph {
 
-/// Where a camera looks, in degrees: yaw to the right, pitch up, roll clockwise; the camera is rolled first, then
+/// The orientation of a camera, in degrees: yaw to the right, pitch up, roll clockwise; the camera is rolled first, then
 /// pitched, then turned. With R its rotation, world ray = R * ray of the camera.
 struct Orientation {
     double yaw = 0, pitch = 0, roll = 0;
 };
 
-/// R, by frames x right, y down, z forward.
+/// The rotation R of an orientation, between frames with x right, y down, z forward.
 glm::dmat3 rotation(const Orientation& orientation);
 
 /// The pull map between two charts, one turned against the other.
 class Panorama {
   public:
-    /// `orientation`: where the target's camera looks; `held`: how that of the source was held (srcyaw, srcpitch and
-    /// srcroll in errors). Throws Error when an angle is not finite.
+    /// `orientation`: that of the target's camera; `held`: that of the source's camera (srcyaw, srcpitch and srcroll in
+    /// errors). Throws Error where an angle is not finite.
     Panorama(const Chart& source, const Chart& target, const Orientation& orientation = {},
              const Orientation& held = {});
 
     const Chart& source() const { return m_source; }
     const Chart& target() const { return m_target; }
-    /// source ray = turn * target ray, by columns: the one rotation, and the other's inverse.
+    /// The rotation between the rays, by columns: source ray = turn * target ray.
     const std::array<std::array<Constant, 3>, 3>& turn() const { return m_turn; }
 
-    /// The map about one point: a branch of either chart, and the rotation between their local rays.
+    /// The branch of the map about one point: a branch of either chart, and the rotation between their local rays.
     struct Local {
         Branch target, source;
         glm::dmat3 rotation;
@@ -44,7 +44,7 @@ class Panorama {
     /// The map about a target point, with the source's branch about another ray of it.
     Local local_around(double x, double y, int piece, const Ray<double>& source_ray) const;
 
-    // As a FormulaMap.
+    // The members that make this a FormulaMap (plan/formula_map.h).
     Size target_size() const { return {m_target.width(), m_target.height()}; }
     Size source_size() const { return {m_source.width(), m_source.height()}; }
     std::vector<Box> target_pieces() const;
@@ -78,14 +78,14 @@ class Panorama {
         return m_source.local_point(local_ray(x, y, local), local.source);
     }
 
-    /// The source point of one target point, read with double or long double: the truth. False where the
-    /// target point has no ray, or the source's lens does not see it.
+    /// Finds the source point of one target point in double or long double, which is what errors are measured against.
+    /// False where the target point has no ray, or the source's lens does not see it.
     template <class T>
     bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const {
         if (!(m_target.inside(x, y, piece) >= 0)) return false;
         return exact(source_ray(x, y, piece), source_point, source_piece);
     }
-    /// The source point of one ray of the source.
+    /// Finds the source point of one ray of the source. False where the source does not see the ray.
     template <class T>
     bool exact(const Ray<T>& r, Point<T>& source_point, int& source_piece) const {
         source_piece = m_source.piece_of(r);
@@ -104,17 +104,17 @@ class Panorama {
     template <class Real>
     double exact_error(const Ray<Rounded<Real>>& ray) const;
 
-    /// Is no lens with a tangential part read the way that is a root?
+    /// Can the map be read by direct()? It cannot where a lens with a tangential part has to be inverted.
     bool may_be_direct() const;
-    /// The map read with Real, float or double, near the middle (x, y) of a block of pixels (number/near.h), whose centres
-    /// are up to half_width and half_height away. Bases are written behind those that are there. `error` is infinite or NaN
-    /// where none is known.
+    /// Evaluates the map with Real, float or double, near the middle (x, y) of a block of pixels (number/near.h), whose centres
+    /// are up to half_width and half_height away. Bases are appended to `bases`. NearReading::error is infinite or NaN where no
+    /// bound is known.
     template <class Real>
     NearReading direct(double x, double y, double half_width, double half_height, const Local& local,
                        Bases& bases) const;
 
-    /// How far the entries of Local::rotation may be off, a product of rotations to and from a local frame, S^T M T: of the exact
-    /// M and the exact frames about the angles that the branches say.
+    /// The largest error of an entry of Local::rotation, a product S^T M T of rotations to and from a local frame, against the
+    /// product of the exact M and the exact frames about the angles that the branches say.
     ///
     /// S and T are off in four entries, each by Heading::kError, which is h here, as it counts the angle's error too. A column of
     /// such errors meets one of a rotation, of length 1: each frame brings sqrt 2 h at most, and terms of h^2 are next to nothing.
@@ -133,13 +133,13 @@ class Panorama {
         if (m_source.pieces().size() == 1) return m_source.sees(r);
         return m_source.sees(transform(glm::transpose(m_source.branch(piece).axes), r), piece);
     }
-    /// Is it certain that no piece sees any of these local rays, which the piece that they are local to does not?
+    /// Is it certain that no piece sees any of these local rays, given that the piece that they are local to does not?
     bool is_unseen(const Ray<Interval>& ray, const Local& local) const;
-    /// Does the source see all these local rays, but for its lens's end?
+    /// Are all these local rays seen, except that some may lie beyond the end of the source's lens?
     bool ends_by_lens(const Ray<Interval>& ray, const Local& local) const;
 
     Chart m_source, m_target;
-    /// The rotation by columns, known better than double holds it, and in double.
+    /// The rotation by columns, more precise than a double, and in double.
     std::array<std::array<Constant, 3>, 3> m_turn;
     glm::dmat3 m_rotation;
 };

@@ -13,7 +13,7 @@ namespace anamorph {
 
 struct NumberRow {
     static constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-    enum Ends { closed, above_least, between };  ///< above_least: `least` is refused; between: both ends are
+    enum Ends { closed, above_least, between };  ///< refused are: above_least, `least`; between, both
 
     const char* name;  ///< lower_snake
     double standard;   ///< the default; NaN where there is none
@@ -21,7 +21,7 @@ struct NumberRow {
     Ends ends = closed;
     bool integer = false;
 
-    /// Whether a number is finite and in the range.
+    /// Is a number finite and in the range?
     bool holds(double value) const;
     /// The range in words: "a number from 0 to 0.5", "an integer of at least 1".
     std::string range() const;

@@ -25,15 +25,15 @@ namespace anamorph {
 
 /// What kind of value a parameter takes.
 enum class ParameterType {
-    number,   ///< finite, decimal, with a point whatever the locale
+    number,   ///< a finite decimal number, with a point whatever the locale
     whole,    ///< an integer
     toggle,   ///< 0 or 1
     choice,   ///< one of `choices`
     extent,   ///< N or NxM, integers, or one of `choices`
-    numbers,  ///< as number, one or more, separated by commas
+    numbers,  ///< one or more such numbers, separated by commas
     image,    ///< the name of an image, or of a recipe
     file,     ///< the name of another file
-    text      ///< any
+    text      ///< any text that is not empty
 };
 
 /// A row of the table.
@@ -43,20 +43,20 @@ struct Parameter {
     std::string unit;
     std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
     std::vector<std::string> choices;
-    std::vector<int>
-        enumerators;  ///< of choice: what each means in an enumeration of the core, where there is one
-    double minimum = 0, maximum = 0;  ///< of number, whole, numbers and extent
-    bool above_minimum = false;       ///< the minimum itself is not accepted (of number and numbers)
+    /// The value of each choice in an enumeration of the core, where there is one.
+    std::vector<int> enumerators;
+    double minimum = 0, maximum = 0;  ///< the range of a number, whole, numbers or extent
+    bool above_minimum = false;       ///< the minimum itself is not accepted (for number and numbers)
     std::string documentation;        ///< one line
     bool definitions = false;         ///< keys that are not in the table define names for it
 
-    /// What a value may be: "a number from 0 to 10", "edges, centers".
+    /// The accepted values in words: "a number from 0 to 10", "edges, centers".
     std::string accepted() const;
     /// The allowed values for a message: "must be a number from 0 to 10", "must be one of edges, centers".
     std::string rule() const;
 };
 
-/// All that an operation takes, in the order of its documentation.
+/// All parameters of an operation, in the order of its documentation.
 using ParameterTable = std::vector<Parameter>;
 
 /// One `key=value`, as written.
@@ -64,10 +64,10 @@ struct Assignment {
     std::string key, value;
 };
 
-/// What was asked for: values checked against a table, later ones over earlier ones.
+/// The values given to an operation's parameters, checked against a table; later values replace earlier ones.
 class ParameterValues {
   public:
-    /// Nothing is given yet. Keeps a reference to the table.
+    /// Constructs values of which none is given yet. Keeps a reference to the table.
     explicit ParameterValues(const ParameterTable& table) : m_table(&table) {}
 
     /// Takes the assignments of one place (a file, a name, a call). Throws Error on an unknown key, a key
@@ -75,8 +75,8 @@ class ParameterValues {
     /// unknown: whoever reads them has to say which are of no use.
     void assign(const std::vector<Assignment>& place);
 
-    /// Takes one value as assign() takes what is written: of a parameter of type number, whole or toggle, or a name that is
-    /// defined. Throws Error on a name that is not known and a value that is not allowed.
+    /// Sets a parameter of type number, whole or toggle, or a name that is defined. Throws Error on a name that is not
+    /// known and a value that is not allowed.
     void set(std::string_view name, double value) { set(name, std::vector<double>{value}); }
     /// Takes one value of type numbers.
     void set(std::string_view name, const std::vector<double>& values);
@@ -86,9 +86,9 @@ class ParameterValues {
     void set(std::string_view name, const std::string& text);
 
     const ParameterTable& table() const { return *m_table; }
-    /// Is there such a parameter?
+    /// Does the table have a parameter of this name?
     bool knows(std::string_view name) const;
-    /// Was it assigned a value?
+    /// Was this parameter assigned a value?
     bool given(std::string_view name) const { return m_given.find(name) != m_given.end(); }
     /// The value as it was written, or the default.
     const std::string& text(std::string_view name) const;
@@ -101,23 +101,23 @@ class ParameterValues {
     std::vector<double> numbers(std::string_view name) const;
     /// Is a toggle on?
     bool toggle(std::string_view name) const { return text(name) == "1"; }
-    /// Which of its choices a row has, counted from 0.
+    /// Which of its choices a parameter has, counted from 0; the number of choices where it has none of them.
     std::size_t choice(std::string_view name) const;
-    /// What that choice means in its enumeration.
+    /// The value that the choice of a parameter has in its enumeration (Parameter::enumerators).
     int enumerator(std::string_view name) const;
     /// The value of an extent. Its height is -1 where only one number was given.
     Size extent(std::string_view name) const;
 
-    /// What keys that are not in the table define, in the order in which they came first.
+    /// The definitions, by keys that are not in the table, in the order in which each key first came.
     const std::vector<Assignment>& definitions() const { return m_definitions; }
     /// For operations that read no definitions: throws Error of the first, as assign() does of a key that is unknown.
     void refuse_definitions() const;
 
-    /// All values as one text, which differs where any value does; `without`: the names of those left out.
+    /// All values as one text, which differs where any value does; `without` names the parameters to leave out.
     std::string key(const std::vector<std::string>& without = {}) const;
 
   private:
-    /// A value as written, and the numbers that it says, if it does: of an extent its width and height.
+    /// A value as written, and the numbers in it, if there are any; for an extent its width and height.
     struct Given {
         std::string text;
         std::vector<double> numbers;
@@ -130,13 +130,13 @@ class ParameterValues {
     bool defines(std::string_view name) const;
     void define(const Assignment& name);
     const Parameter& row_of(std::string_view name) const;
-    /// The numbers of a value that was given, else those of the default. Throws Error where it says none.
+    /// The numbers of the given value, or those of the default. Throws Error where there are none.
     std::vector<double> numbers_of(std::string_view name) const;
 };
 
-/// The assignments of a recipe file's text. Throws Error naming the line.
+/// Parses the text of a recipe file. Throws Error naming the line.
 std::vector<Assignment> parse_recipe(std::string_view text);
-/// Longer recipe files are refused.
+/// The largest size of a recipe file, in bytes; parse_recipe() refuses longer ones.
 inline constexpr std::size_t kMaxRecipeBytes = std::size_t{1} << 20;
 
 /// A recipe name in its parts.
@@ -148,10 +148,10 @@ struct RecipeName {
 /// Splits a recipe name. Throws Error on an argument that is not key=value.
 RecipeName parse_recipe_name(std::string_view name);
 
-/// `text` for a message: at most 100 characters, all printable.
+/// Returns `text` made fit for a message: at most 100 bytes of it, all printable.
 std::string printable(std::string_view text);
 
-/// What `error` says, in one printable line; of memory that cannot be had, that it cannot be had for `what`.
+/// The message of `error` as one printable line; where memory was short, "not enough memory for" `what`.
 std::string message_of(const std::exception& error, const std::string& what);
 
 /// A number in the fewest digits that read back as the same number.
@@ -161,7 +161,7 @@ std::string shortest(float value);
 /// A number to ten digits, for messages.
 std::string brief(double value);
 
-/// The table as a page of Markdown.
+/// A page of Markdown with `title` and the parameters of the table.
 std::string reference_page(const std::string& title, const ParameterTable& table);
 
 }  // namespace anamorph

@@ -32,28 +32,28 @@ struct RegionData {
 struct Block {
     /// bicubic: the map gives the polynomial (BlockMap::bicubic); x and y hold a quadratic near it.
     /// computed: the map gives the points, row by row, as offsets from the base (BlockMap::computed_row), or in double.
-    /// exact: point by point by the formula. outside: there are none.
+    /// exact: the formula gives the points one by one. outside: no pixel has a source point.
     enum class Kind : std::uint8_t { polynomial, bicubic, computed, exact, outside };
     static constexpr int kMaxSide = 64;
 
     Box box;
     Kind kind = Kind::exact;
-    bool precise =
-        false;  ///< exact blocks: in long double; bicubic and computed: in double, by BlockMap::exact_rows
-    int piece = 0;         ///< of the target, and the layer (BlockMap)
-    int source_piece = 0;  ///< not for exact blocks, nor outside
+    /// Are exact blocks evaluated in long double, bicubic and computed ones in double (BlockMap::exact_rows)?
+    bool precise = false;
+    int piece = 0;         ///< the piece of the target, which also says the layer (BlockMap)
+    int source_piece = 0;  ///< the piece of the source; not set for exact blocks and those outside
     std::int32_t base_x = 0, base_y = 0;
     float x[6] = {}, y[6] = {};
-    double bound = 0;  ///< of the distance to the exact source point, in source pixels
-    /// Computed and bicubic blocks: the data of their region, if the map keeps any, and their record there.
+    double bound = 0;  ///< largest distance from the exact source point, proven; source pixels
+    /// The data of the region of a computed or bicubic block, if the map keeps any, and the block's record there.
     const RegionData* data = nullptr;
     int record = 0;
 };
 
-/// Computed blocks in double are as good as exact ones up to this bound (source pixels).
+/// The largest bound, in source pixels, up to which computed blocks in double count as exact.
 inline constexpr double kExactError = 1e-9;
 
-/// Does each pixel of a block get its source point exactly: in double by the formula, or as good as that?
+/// Does each pixel of a block get its source point in double by the formula, or within kExactError of that?
 inline bool is_exact(const Block& block) {
     return block.kind == Block::Kind::exact ||
            (block.kind == Block::Kind::computed && block.precise && block.bound <= kExactError);
@@ -71,10 +71,11 @@ struct BlockPolynomial {
     float c[4][8] = {};
 };
 
-/// A block's x and y in that form.
+/// The quadratic of a block (Block::x and Block::y) as a BlockPolynomial.
 BlockPolynomial quadratic_of(const Block& block);
 
-/// What a picture reached: the largest proven bound in use and the fraction of pixels evaluated exactly (is_exact).
+/// The accuracy of a picture: the largest proven bound in use, in source pixels, and the fraction of pixels evaluated
+/// exactly (is_exact).
 struct Reached {
     double max_error = 0;
     double exact_fraction = 0;
@@ -85,11 +86,11 @@ struct Blocks : std::vector<Block> {
     std::shared_ptr<const RegionData> data;
 };
 
-/// Blocks that stay as long as this does, whatever the map they came from has let go since. A range, and no
-/// pointer: `for (const Block& b : map.blocks(region))` keeps them for the whole loop.
+/// Shared ownership of the blocks of a region, which live as long as this, even when the map no longer keeps them.
+/// It is a range, so that `for (const Block& b : map.blocks(region))` keeps them for the whole loop.
 class SharedBlocks {
   public:
-    /// Keeps `blocks`, which are not null.
+    /// Shares `blocks`, which is not null.
     explicit SharedBlocks(std::shared_ptr<const Blocks> blocks) : m_blocks(std::move(blocks)) {}
 
     auto begin() const { return m_blocks->begin(); }
@@ -102,16 +103,16 @@ class SharedBlocks {
     std::shared_ptr<const Blocks> m_blocks;
 };
 
-/// Room for the source points of all pixels of a block, row by row, as offsets from its base.
+/// A buffer for the source points of all pixels of a block, row by row, as offsets from its base.
 struct PointRows {
     float *x, *y;
     std::ptrdiff_t stride;  ///< floats from row to row; behind each there is room for 16 more
 };
 
-/// Room for the source points of rows of pixels in double.
+/// A buffer for the source points of rows of pixels in double.
 struct DoubleRows {
     double *x, *y;
-    std::int32_t* piece;    ///< of the source; -1 where there is no source point
+    std::int32_t* piece;    ///< the piece of the source; -1 where there is no source point
     std::ptrdiff_t stride;  ///< entries from row to row; behind each there is room for 16 more
 };
 
@@ -119,7 +120,7 @@ struct DoubleRows {
 struct BlockLayout {
     int layers = 1;
     int region_side = 256;  ///< pixels
-    /// Plans of so many regions are kept; then all of them are let go.
+    /// The largest number of regions whose plans are kept; when it is reached, all of them are discarded.
     std::size_t kept_regions = 8192;
 };
 
@@ -156,34 +157,35 @@ class BlockMap {
     /// threads that ask for the same region plan it once.
     SharedBlocks blocks(std::int64_t region) const;
 
-    /// Over the whole picture and all layers.
+    /// The accuracy reached over the whole picture and all layers; plans every region.
     Reached reached(const ParallelFor& parallel_for) const;
 
-    /// The formula in double: the source point of a target point. False where there is none.
+    /// Finds the source point of a target point by the formula in double. False where there is none.
     virtual bool exact(double x, double y, int piece, Point<double>& source_point,
                        int& source_piece) const noexcept = 0;
     /// Does exact() find a source point?
     virtual bool seen(double x, double y, int piece) const noexcept;
-    /// The source point as exactly as is known: what errors are measured against. In double if nothing better is.
+    /// Finds the source point as precisely as the map can, as the reference for measuring errors; in double by default.
     virtual bool truth(double x, double y, int piece, Point<long double>& source_point,
                        int& source_piece) const noexcept;
-    /// The source point of a target point of an exact block.
+    /// Finds the source point of a target point of an exact block, in the block's precision. False where there is none.
     bool exact(const Block& block, double x, double y, Point<double>& source_point,
                int& source_piece) const noexcept;
     /// The source points of rows [begin, end) (0 is the block's first) of a block for which in_double() holds.
     virtual void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept;
-    /// Source pixels per target pixel at a target point.
+    /// The derivative of the map at a target point: source pixels per target pixel.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
     /// Do exact() and jacobian() answer at any point of a pixel, each in little time, and change from point to point as one
     /// formula does?
     virtual bool is_smooth_in_pixels() const noexcept { return false; }
-    /// The polynomial of a bicubic block.
+    /// The polynomial of a bicubic block; it gives offsets from the block's base.
     virtual BlockPolynomial bicubic(const Block& block) const noexcept;
-    /// Pixels [begin, end) of row `row` (0 is the block's first) of a computed block: source points less the
-    /// block's base. There is room for 16 more floats.
+    /// Writes the source points of pixels [begin, end) of row `row` (0 is the block's first) of a computed block, less the
+    /// block's base. The buffers have room for 16 more floats.
     virtual void computed_row(const Block& block, int row, int begin, int end, float* x,
                               float* y) const noexcept;
-    /// All pixels of the computed blocks that all layers have in one place, each to rows of its own.
+    /// Writes the source points of all pixels of computed blocks: those that the layers have in one place, each to
+    /// rows of its own.
     virtual void computed(std::span<const Block> layers, const PointRows* to) const noexcept;
 
   protected:

@@ -57,7 +57,7 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     { map.source_size() } -> std::same_as<Size>;
     { map.target_pieces() } -> std::same_as<std::vector<Box>>;
     { map.local_around(a, a, piece) } -> std::same_as<typename Map::Local>;
-    /// The source point of a target point; the same with jets, intervals and Rounded.
+    /// The source point of a target point; the map takes jets, intervals and Rounded as well.
     { map(a, a, local) } -> std::same_as<Point<double>>;
     /// Whether pixel centres or whole pixels in the box x, y of a piece have source points; `local` is about its middle. A part of a box
     /// inside is inside, about its own middle. May one branch run over the seam of a source that closes on itself?
@@ -65,9 +65,9 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     /// The piece of the source that a branch leads to.
     { map.source_piece(local) } -> std::same_as<int>;
     { map.source_edges() } -> std::same_as<SourceEdges>;
-    /// Source pixels after which x comes back to the same place, or 0.
+    /// The period of x in source pixels, after which the source repeats, or 0.
     { map.period() } -> std::same_as<int>;
-    /// The source point of one target point, the truth: false where there is none.
+    /// Finds the source point of one target point, as the reference for errors; false where there is none.
     { map.exact(a, a, piece, p, piece) } -> std::same_as<bool>;
     { map.exact(b, b, piece, q, piece) } -> std::same_as<bool>;
     /// Bounds the rounding of exact<Real> over a box, its result kept in double. 0 where no point has a
@@ -76,11 +76,12 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     { map.template exact_error<long double>(x, x, piece) } -> std::same_as<double>;
 };
 
-/// What a map is near the middle of a block: the source point there, and a bound of the error of its pixels'.
+/// The map near the middle of a block: the source point there, and a bound of the error of the source points of its
+/// pixels.
 struct NearReading {
     Point<double> middle;
-    double error;         ///< where the bases are read in the order in which they were written
-    std::uint64_t order;  ///< that order (number/reading_order.h)
+    double error;         ///< the bound, valid where bases are read in the order in which they were written
+    std::uint64_t order;  ///< the sum of that order (number/reading_order.h)
 };
 
 /// A map whose plan reads it pixel by pixel near the middles of blocks as well (FormulaPlan's computed blocks), because
@@ -88,14 +89,14 @@ struct NearReading {
 template <class Map>
 concept DirectMap = FormulaMap<Map> &&
     requires(const Map& map, const typename Map::Local& local, double a, Bases& bases) {
-    /// Does it read nothing that has no such bound anywhere?
+    /// Does the map have such a bound somewhere? False where it depends on a formula without one.
     { map.may_be_direct() } -> std::same_as<bool>;
-    /// About (a, a), of pixels up to (a, a) away, read in float or in double. Its bases are appended.
+    /// The map near (a, a), for pixels up to (a, a) away, read in float or in double. Its bases are appended to `bases`.
     { map.template direct<float>(a, a, a, a, local, bases) } -> std::same_as<NearReading>;
     { map.template direct<double>(a, a, a, a, local, bases) } -> std::same_as<NearReading>;
 };
 
-/// What all maps of one flat picture to another have in common. `Formula`, derived from this, gives
+/// The base class of maps from one flat picture to another. `Formula`, derived from this, gives
 ///
 ///   Point<T> source_point(const T& x, const T& y) const     smooth wherever inside() > 0
 ///   T inside(const T& x, const T& y) const                  > 0 where there is a source point; optional

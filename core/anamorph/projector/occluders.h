@@ -16,13 +16,12 @@
 
 namespace anamorph {
 
-/// What is too small to count in shadows, as seen from the centre.
+/// The sizes, as seen from the centre, below which parts of shadows are neglected.
 struct ShadowScale {
-    double per_radian = 1;  ///< texels
-    double thin =
-        0;  ///< in texels: narrower strips of light or shadow are left where they are, and a narrower triangle
-            ///< is what its middle is
-    double on_plane = 0;  ///< relative to its distance, a ray as near to a plane as this lies in it
+    double per_radian = 1;  ///< texels per radian
+    /// In texels: narrower strips of light or shadow are neglected, and a narrower triangle is lit or hidden as its middle is.
+    double thin = 0;
+    double on_plane = 0;  ///< a ray as near to a plane as this, relative to its length, lies in it
 };
 
 /// How much of a triangle is in shadows.
@@ -30,14 +29,14 @@ struct ShadowCover {
     /// How much of the triangle is hidden.
     enum Share {
         lit,     ///< none of it is hidden
-        hidden,  ///< all of it is
-        both     ///< some of it is
+        hidden,  ///< all of it is hidden
+        both     ///< some of it is hidden
     };
     Share share = lit;  ///< what there is of shadows
     /// Weights of a point within the triangle where its share is both, a corner of a shadow if there is one.
     glm::dvec3 corner{1. / 3};
-    bool has_corner = false;  ///< is it one?
-    bool mostly_lit = false;  ///< is more than half of its area, where it is both?
+    bool has_corner = false;  ///< is `corner` a corner of a shadow?
+    bool mostly_lit = false;  ///< where the share is both: is more than half of the triangle's area lit?
 };
 
 /// Triangles that hide what is behind them from a point.
@@ -47,40 +46,43 @@ class Occluders {
     /// itself, nor what touches it.
     static constexpr double kTouching = 0x1p-16;
 
-    /// Three corners each. Those that are not finite, or seen edge-on, hide nothing.
+    /// `corners`: three for each triangle. Triangles that are not finite, or seen edge-on, hide nothing.
     Occluders(const std::vector<glm::dvec3>& corners, const glm::dvec3& centre);
 
     /// Is a point hidden?
     bool hides(const glm::dvec3& point) const;
-    /// False if nothing hides any of a triangle.
+    /// May something hide a part of a triangle? False if nothing does.
     bool may_hide(const std::array<glm::dvec3, 3>& triangle) const;
-    /// The first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
+    /// Finds the first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
     /// Stretches shorter than `hair` do not count.
     double border(const glm::dvec3& a, const glm::dvec3& b, double hair, const ShadowScale& scale) const;
     /// How much of a triangle is in shadows.
     ShadowCover cover(const std::array<glm::dvec3, 3>& triangle, const ShadowScale& scale) const;
 
-    /// A triangle: it hides a point, of ray r from the centre, if normals[k] . r >= 0 for its three sides and
+    /// A triangle that hides a point, of ray r from the centre, if normals[k] . r >= 0 for its three sides and
     /// normals[3] . r > depth.
     struct Occluder {
         std::array<glm::dvec3, 4> normals;
         double depth;
-        /// normals[k] . ray, of the last one less depth: what is 0 at least where a point is hidden.
+        /// The value of normals[k] . ray, less `depth` for k = 3: a point is hidden where all four are not negative (that of
+        /// k = 3, positive).
         double value(std::size_t k, const glm::dvec3& ray) const;
     };
-    /// A box around some of them, from the centre.
+    /// A box around some of the triangles, relative to the centre.
     struct Node {
         glm::dvec3 low, high;
-        std::int32_t begin, end, right;  ///< of its occluders; its second half, or 0; the first one is next
+        /// `begin` and `end` of its occluders; the position of its second half, or 0. Its first half is the next node.
+        std::int32_t begin, end, right;
     };
     ///@{
-    /// All of them, and the boxes from the largest on, depth first: for those who follow rays themselves, as shaders do.
+    /// The triangles, and the boxes around them from the largest on, depth first, for callers that trace rays themselves, as
+    /// shaders do.
     const std::vector<Occluder>& occluders() const { return m_occluders; }
     const std::vector<Node>& nodes() const { return m_nodes; }
     ///@}
 
   private:
-    /// normal . r + offset >= 0
+    /// The half space normal . r + offset >= 0.
     struct HalfSpace {
         glm::dvec3 normal;
         double offset;

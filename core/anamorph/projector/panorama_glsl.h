@@ -11,16 +11,17 @@
 
 namespace anamorph {
 
-/// What panorama_glsl() calls; once in a shader, before it.
+/// The GLSL functions that those of panorama_glsl() call; they belong once in a shader, before them.
 std::string_view panorama_glsl_prelude();
 
-/// Definitions for a shader of GLSL 1.50 or later, of
+/// The text of a definition for a shader of GLSL 1.50 or later, of
 ///
 ///   bool NAME(vec3 ray, vec3 right, vec3 up, out vec2 texel, out vec2 alongRight, out vec2 alongUp)
 ///
-/// `ray`: in the frame of rays (chart/chart.h), of any length; `right` and `up`: how it changes from a fragment to the next
-/// ones. Set are the texel, in pixels of the panorama, x right and y down, and how it changes. False where the ray is not in
-/// the panorama, or has no direction. Lenses that need a root get 10 steps of Newton's iteration.
+/// `ray`: in the frame of rays (chart/chart.h), of any length; `right` and `up`: its differences to the next fragments. The
+/// function sets `texel`, in pixels of the panorama, x right and y down, and its differences to the next fragments. It
+/// returns false where the ray is not in the panorama, or has no direction. Lenses that need a root get 10 steps of
+/// Newton's iteration.
 std::string panorama_glsl(const Chart& panorama, const std::string& name);
 
 }  // namespace anamorph

@@ -23,45 +23,48 @@
 
 namespace anamorph {
 
-/// How much of a point is a projector's, before shares are divided by their sum; 0 where it throws nothing. `texel` is set
-/// where it is not. `fade`: in texels of the panorama, how wide its border fades.
+/// The share of a projector in the colour of a point, before shares are divided by their sum; 0 where the point does not
+/// receive its panorama. `texel` is set where the share is not 0. `fade`: the width, in texels of the panorama, over which the
+/// share falls to 0 towards its border.
 double share_of(const Projector& projector, const glm::dvec3& point, const glm::dvec3& normal, double fade,
                 Point<double>& texel);
 
 /// A projector and its picture.
 struct ThrownPicture {
-    Projector projector;            ///< and the size of its panorama
-    const float* pixels = nullptr;  ///< rows from the top, channels beside each other; they have to last
-    const Occluders* occluders = nullptr;  ///< about the projector's position; none: nothing is hidden
+    Projector projector;                   ///< the projector, whose panorama has the size of the picture
+    const float* pixels = nullptr;         ///< not owned; rows from the top, channels beside each other
+    const Occluders* occluders = nullptr;  ///< centred on the projector's position; null: nothing is hidden
 };
 
 /// A triangle of a mesh with its texture coordinates, u to the right and v up, from 0 to 1.
 struct BakedTriangle {
     std::array<glm::dvec3, 3> points;         ///< in the scene
-    std::array<glm::dvec2, 3> coordinates{};  ///< of its texture
+    std::array<glm::dvec2, 3> coordinates{};  ///< texture coordinates
 };
 
 /// How a texture is made.
 struct BakeOptions {
-    Size size{1024, 1024};  ///< of the texture
-    int channels = 3;       ///< of all pictures
-    double fade = 32;       ///< texels of a panorama: towards its borders, its share goes down to 0
-    /// Texels beyond the border of a triangle that are painted, too, as its plane goes on: for filters that read across it.
+    Size size{1024, 1024};  ///< size of the texture
+    int channels = 3;       ///< number of channels of every picture
+    double fade = 32;       ///< texels of a panorama over which its share falls to 0 towards its borders
+    /// The width, in texels, of a margin around a triangle that is painted, too, by its plane: for filters that read across
+    /// the border.
     double margin = 1;
-    /// Only rows first_row, first_row + row_step and so on are made, for several that share the work; others stay 0.
+    /// The first row that is made, and the step to the next ones, for processes that share the work; other rows stay 0.
     int first_row = 0;
-    int row_step = 1;  ///< from one of these to the next
+    int row_step = 1;
 };
 
-/// A texture: rows from the top, the channels of the pictures and one of coverage, 0 or 1.
+/// A baked texture: rows from the top, the channels of the pictures and one of coverage, 0 or 1.
 struct BakedTexture {
-    std::vector<float> pixels;  ///< colours are not multiplied by coverage; 0 where that is
-    std::int64_t painted = 0;   ///< texels
+    std::vector<float> pixels;  ///< colours, not multiplied by coverage; 0 where coverage is 0
+    std::int64_t painted = 0;   ///< texels that are painted
     std::int64_t unseen = 0;    ///< texels of the mesh that no projector throws anything on
 };
 
-/// Bakes. The first triangle that a texel lies in has it. The same bits for any `parallel_for`. Throws Error: a size, a number
-/// of channels, a fade, a margin or a row out of their range, or no pixels.
+/// Bakes pictures into the texture of a mesh. A texel belongs to the first triangle that it lies in. The bits are the same for
+/// any `parallel_for`. Throws Error where a size, a number of channels, a fade, a margin or a row is out of its range, or
+/// where a picture has no pixels.
 BakedTexture bake(const std::vector<BakedTriangle>& mesh, const std::vector<ThrownPicture>& pictures,
                   const BakeOptions& options = {}, const ParallelFor& parallel_for = serial_for);
 

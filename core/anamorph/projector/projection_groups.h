@@ -19,34 +19,35 @@
 
 namespace anamorph {
 
-/// The field of view about a direction of projection, and its table.
+/// The field of view about a direction of projection, and the size of its table of residuals.
 struct GroupOptions {
     double x_max = 1, y_max = 1;  ///< |x'| and |y'| go up to these: 1 is 45 degrees
-    int columns = 256;            ///< of the table: its nodes go from border to border
-    int rows = 256;               ///< of the table
+    int columns = 256;            ///< nodes of the table across, from border to border
+    int rows = 256;               ///< nodes of the table down
 };
 
 /// A direction of projection with its linear part and residuals.
 struct ProjectionGroup {
     glm::dmat3 axes{1};  ///< e, f and d in the frame of rays (chart/chart.h), as columns
-    /// Times a ray: texel x and y of the linear part, both times r . d, and r . d. Rows go to these, as with GLM's product.
+    /// The matrix of the linear part: its product with a ray r is (x r . d, y r . d, r . d), with the texel (x, y).
     glm::dmat3 linear{1};
     std::vector<std::array<float, 2>> residuals;  ///< texels, in rows from y' = -y_max, x' = -x_max
-    double bound =
-        0;  ///< texels: how far the sum of both is from the panorama's formula, proven; infinite where unknown
-    double linear_error = 0;  ///< texels: the largest residual of the table
+    /// A proven bound, in texels, of the distance of the sum of both from the panorama's formula; infinite where unknown.
+    double bound = 0;
+    double linear_error = 0;  ///< the largest residual of the table, in texels
 };
 
-/// Directions of projection for a projector.
+/// The directions of projection of a projector, with their tables.
 class ProjectionGroups {
   public:
-    /// `directions` in the frame of rays; any length, but not along y, which goes downwards in every projection plane.
-    /// Texels go on across the seam of a closed panorama: readers repeat it. Throws Error.
+    /// `directions`: in the frame of rays, of any length, but not along y, which goes downwards in every projection plane.
+    /// Texels go on across the seam of a closed panorama, so that readers have to repeat it. Throws Error on options or
+    /// directions out of range.
     ProjectionGroups(const Projector& projector, const std::vector<glm::dvec3>& directions,
                      const GroupOptions& options = {});
 
-    /// Directions all around, level and so many. Any geometry whose azimuths differ by no more than
-    /// 2 atan(x_max) - 2 pi / count is then within one of them.
+    /// Returns `count` level directions all around. Any geometry whose azimuths differ by no more than
+    /// 2 atan(x_max) - 2 pi / count is then in the field of view of one of them.
     static std::vector<glm::dvec3> level_directions(int count);
 
     /// The groups, in the order of the directions.
@@ -54,10 +55,11 @@ class ProjectionGroups {
     /// The options that it was made with.
     const GroupOptions& options() const { return m_options; }
 
-    /// The group that a triangle of the scene lies in, the one with it nearest to its middle; -1 where it has to be cut.
+    /// The group in whose field of view a triangle of the scene lies, of several the one with the triangle nearest to its
+    /// middle; -1 where it lies in none and has to be cut.
     int group_of(const std::array<glm::dvec3, 3>& triangle) const;
-    /// The texel that a group finds for a point of the scene: the linear part and the table's residual. False where the
-    /// point is not in its field of view.
+    /// Finds the texel of a point of the scene by a group: the linear part plus the table's residual. False where the point is
+    /// not in the group's field of view.
     bool texel(int group, const glm::dvec3& point, Point<double>& at) const;
 
   private:

@@ -15,22 +15,22 @@ namespace anamorph {
 /// Where a projector stands, and how it is turned.
 struct ProjectorPose {
     glm::dvec3 position{0.0};        ///< the centre of the panorama, in the scene
-    glm::dvec3 direction{0, 0, -1};  ///< of the panorama's middle; any length
+    glm::dvec3 direction{0, 0, -1};  ///< direction of the panorama's middle; any length
     glm::dvec3 up{0, 1, 0};          ///< not along the direction; need not be at right angles to it
 };
 
-/// Right, down and forward of a pose, in the scene, as columns: within a few roundings at right angles, of length 1. Throws
-/// Error: a position that is not finite, a direction or an up that is none, or the one along the other.
+/// The right, down and forward axes of a pose, in the scene, as columns: orthonormal to within a few roundings. Throws Error
+/// where the position is not finite, where direction or up is 0 or not finite, and where they are parallel.
 glm::dmat3 frame_of(const ProjectorPose& pose);
 
-/// What a point of the scene receives.
+/// What a point of the scene receives from a projector.
 enum class Received {
     texel,         ///< a point of the panorama
-    nothing,       ///< its direction is not in the panorama
-    no_direction,  ///< it is the centre, not finite, or on the axis of a panorama that has no poles
+    nothing,       ///< the direction of the point is not in the panorama
+    no_direction,  ///< the point is the centre, not finite, or on the axis of a panorama that has no poles
 };
 
-/// A panorama and its projector.
+/// A panorama and the pose of its projector.
 class Projector {
   public:
     /// A panorama thrown from a pose. Throws what frame_of() throws.
@@ -38,16 +38,17 @@ class Projector {
 
     const Chart& panorama() const { return m_panorama; }
     const ProjectorPose& pose() const { return m_pose; }
-    /// frame_of() the pose.
+    /// The axes of the pose, frame_of().
     const glm::dmat3& frame() const { return m_frame; }
 
     /// The ray from the centre to a point of the scene, in the frame of rays (chart/chart.h), in units of the scene.
     glm::dvec3 ray(const glm::dvec3& point) const { return (point - m_pose.position) * m_frame; }
 
-    /// No ray of the panorama has a smaller part forward, relative to its length: a proven bound, -1 where none is known.
+    /// A proven lower bound of the forward component z of the panorama's rays of length 1; -1 where none is known.
     double least_forward() const { return m_least_forward; }
 
-    /// What a point receives. `texel`, in pixels of the panorama, x right and y down, is set where it is one.
+    /// Finds what a point of the scene receives. `texel`, in pixels of the panorama, x right and y down, is set where the
+    /// result is Received::texel.
     Received receive(const glm::dvec3& point, Point<double>& texel) const;
 
   private:
@@ -57,7 +58,7 @@ class Projector {
     double m_least_forward = -1;
 };
 
-/// A ray times a power of 2, of a length from 1 to 4, as projections read it without overflow; without a direction, 0.
+/// A ray scaled by a power of 2 to a length from 1 to 4, so that projections do not overflow; 0 where it has no direction.
 glm::dvec3 scaled_ray(const glm::dvec3& ray);
 
 }  // namespace anamorph

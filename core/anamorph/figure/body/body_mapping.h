@@ -15,10 +15,10 @@
 
 namespace anamorph::figure {
 
-/// How a texture is laid around a body.
+/// How a texture is mapped onto a body.
 enum class BodyMapping {
     latlong,     ///< longitude and latitude: once around, the seam at the back
-    mirrored,    ///< the same over the front alone, and mirrored over the back, as MRASEL has it
+    mirrored,    ///< longitude and latitude over the front alone, mirrored over the back, as MRASEL has it
     linear,      ///< a plane picture pushed through: stripes stay straight, narrower towards the poles
     octahedral,  ///< the sphere unfolded over an octahedron: no pole
 };
@@ -31,7 +31,7 @@ enum class TextureAverage {
     mrasel        ///< the nearest texel of the level that MRASEL takes
 };
 
-/// (u, v) of a point of the unit sphere, for any number (number/number.h).
+/// Finds the texture coordinates (u, v) of the point (x, y, z) of the unit sphere, for any number (number/number.h).
 template <class T>
 void texture_point(BodyMapping mapping, const T& x, const T& y, const T& z, T& u, T& v) {
     constexpr double pi = std::numbers::pi;

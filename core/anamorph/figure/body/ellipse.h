@@ -9,27 +9,27 @@
 
 namespace anamorph::figure {
 
-/// The points center + cosine cos(t) + sine sin(t). Vector: glm::dvec2 or glm::dvec3.
+/// An ellipse: the points center + cosine cos(t) + sine sin(t). Vector: glm::dvec2 or glm::dvec3.
 template <class Vector>
 struct Ellipse {
     Vector center{0.0}, cosine{0.0}, sine{0.0};
 
-    /// t in radians.
+    /// The point at the parameter t, in radians.
     Vector operator()(double t) const { return center + cosine * std::cos(t) + sine * std::sin(t); }
-    /// The derivative by t.
+    /// The derivative of the point by t.
     Vector tangent(double t) const { return sine * std::cos(t) - cosine * std::sin(t); }
 };
 
-/// Half-axes of an ellipse in the plane: the point at parameter s on its axes is the one at t = s + shift.
+/// The principal axes of an ellipse in the plane: the point at parameter s on them is the one at t = s + shift.
 struct PrincipalAxes {
     double major = 0, minor = 0;  ///< half-lengths
-    double angle = 0;             ///< of the major axis against x, radians, in (-pi/2, pi/2]
+    double angle = 0;             ///< angle of the major axis against x, radians, in (-pi/2, pi/2]
     double shift = 0;             ///< the major axis ends at t = shift
     bool mirrored = false;        ///< t runs from x to -y
 };
 
-/// 2 shift is the argument of (|cosine|^2 - |sine|^2, 2 cosine.sine): there the distance from the centre is
-/// largest.
+/// Finds the principal axes of an ellipse. 2 shift is the argument of (|cosine|^2 - |sine|^2, 2 cosine.sine): there the
+/// distance from the centre is largest.
 inline PrincipalAxes principal_axes(const Ellipse<glm::dvec2>& e) {
     PrincipalAxes axes;
     axes.shift = 0.5 * std::atan2(2 * glm::dot(e.cosine, e.sine),

@@ -7,7 +7,7 @@
 
 namespace anamorph::figure {
 
-/// The points center + rotation diag(axes) x with |x| <= 1.
+/// An ellipsoid: the points center + rotation diag(axes) x with |x| <= 1.
 struct Ellipsoid {
     glm::dvec3 center{0.0};    ///< c, in the units of the scene
     glm::dvec3 axes{1.0};      ///< a: half the lengths along its own axes, in the same units; not negative

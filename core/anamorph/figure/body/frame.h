@@ -20,7 +20,7 @@ struct Body {
     std::string name;
     int figure = 0;                  ///< position in FigureFrame::figures
     glm::dvec3 color{255, 128, 64};  ///< red, green, blue, 0 to 255
-    std::string texture;             ///< the name of its picture; empty when it has none
+    std::string texture;             ///< the name of its picture; empty where it has none
     glm::dvec2 texture_offset{0};    ///< in texels
 };
 
@@ -43,7 +43,7 @@ struct FigureFrame {
     std::vector<Body> bodies;
     std::vector<Joint> joints;
     std::vector<std::string> figures;
-    std::vector<BackgroundBand> bands;  ///< the background, from above; none where it is transparent
+    std::vector<BackgroundBand> bands;  ///< the background, from the top; empty where it is transparent
     glm::dvec3 place{500.0};            ///< the centre of attention: it is seen in the middle of the window
     glm::dmat3 observer{1.0};  ///< turns space about `place` before it is seen: Rx Ry Rz of `observe`
     glm::dvec3 observe{0.0};   ///< the angles of `observer`

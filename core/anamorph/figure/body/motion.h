@@ -11,28 +11,29 @@
 
 namespace anamorph::figure {
 
-/// A motion must not be used by two threads at once.
+/// A sequence of frames of figures. A motion must not be used by two threads at once.
 class Motion {
   public:
     virtual ~Motion() = default;
 
-    /// The frames shown: first_frame() + i frame_step() up to last_frame(), none when last < first.
+    /// The number of the first frame that is shown. The frames shown are first_frame() + i frame_step() up to last_frame(),
+    /// none where last_frame() is less than first_frame().
     virtual int first_frame() const { return 1; }
-    /// The last that is shown.
+    /// The number of the last frame that is shown.
     virtual int last_frame() = 0;
     virtual int frame_step() const { return 1; }
     /// The number of frames that are shown.
     int frame_count();
 
-    /// Any frame from 0 on, shown or not; frame 0 is the figures at rest. The same bits in whatever order
+    /// Makes any frame from 0 on, shown or not; frame 0 is the figures at rest. A frame has the same bits in whatever order
     /// frames are asked for. Throws Error on numbers out of range.
     virtual FigureFrame frame(int number) = 0;
-    /// The frames shown, in order, until `body` returns false.
+    /// Calls `body` for the frames that are shown, in order, until it returns false.
     virtual void for_each_frame(const std::function<bool(const FigureFrame&)>& body);
 
-    /// How fast the frames are meant to be shown.
+    /// The rate at which the frames are meant to be shown.
     virtual double frames_per_second() const { return 25; }
-    /// What a file says that is not drawn as it says, one line each, with the file's name.
+    /// Warnings about contents of a file that are not drawn as the file says, one line each, with the file's name.
     virtual const std::vector<std::string>& warnings() const;
     /// The names of the pictures that bodies may have for textures.
     virtual const std::vector<std::string>& images() const;

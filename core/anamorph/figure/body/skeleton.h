@@ -13,7 +13,7 @@ namespace anamorph::figure {
 /// A straight line that stands for a body, or for part of one.
 struct Stick {
     glm::dvec3 from{0.0}, to{0.0};  ///< in the scene
-    int body = 0;                   ///< position of the body that it stands for
+    int body = 0;                   ///< position of the body that the stick stands for
 };
 
 /// The longest axis of each body from end to end (the first of equal ones), in their order.

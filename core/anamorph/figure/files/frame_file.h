@@ -23,16 +23,16 @@
 
 namespace anamorph::figure {
 
-/// The text of a frame. Throws Error where a number does not fit a 32-bit integer.
+/// The record of a frame as text. Throws Error where a number does not fit a 32-bit integer.
 std::string frame_text(const FigureFrame& frame);
-/// The record after the last frame.
+/// The record that follows the last frame, as text.
 std::string frames_end_text(const FigureFrame& last);
 
-/// Reads frames one by one out of a text, which must outlive it. Throws Error: one line that names the file
+/// Reads frames one by one from a text, which must outlive the reader. Throws Error: one line that names the file
 /// and the line.
 class FrameReader {
   public:
-    /// `name` stands in messages (a file's name).
+    /// `name` is the file's name in messages.
     FrameReader(std::string_view text, std::string_view name);
     /// Reads the next frame. False at the end of the text or after the end record.
     bool read(FigureFrame& frame);
@@ -44,7 +44,7 @@ class FrameReader {
     bool m_ended = false;
 };
 
-/// All frames of a text.
+/// Reads all frames of a text. Throws Error as FrameReader does.
 std::vector<FigureFrame> parse_frames(std::string_view text, std::string_view name);
 
 }  // namespace anamorph::figure

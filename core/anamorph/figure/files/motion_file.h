@@ -24,10 +24,11 @@
 
 namespace anamorph::figure {
 
-/// Whether a file with this name holds frames (.bvh, .cif, .3, .mrasel), in small letters or capitals.
+/// Does a file's name end like that of a file of frames (.bvh, .cif, .3, .mrasel), in lower or upper case?
 bool is_motion_file(std::string_view name);
 
-/// Reads the text of a file, by the ending of its name. Throws Error naming the file and the line or entry.
+/// Reads the text of a file in the format that the ending of its name says, .3 for any other. Throws Error naming the
+/// file and the line or entry.
 std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name);
 
 /// Reads the text of a BVH file, whatever its name. Throws Error naming the file and the line.

@@ -12,10 +12,10 @@
 
 namespace anamorph::figure {
 
-/// Frames as a binary glTF file (.glb): a node for each figure and in it one for each body, in metres, of
-/// which 500 units are one. Between frames places and half-axes go straight, turns the shortest way. Colors
-/// are those of the first frame. Throws Error without frames, where frames have different bodies, and where a
-/// number does not fit float.
+/// Frames as a binary glTF file (.glb): a node for each figure and in it one for each body, in metres, each 500 units
+/// long. Between frames, positions and half-axes are interpolated linearly, rotations along the shortest arc. Colors
+/// are those of the first frame. Throws Error where there are no frames, where frames have different bodies, and where
+/// a number does not fit float.
 std::string glb_file(std::span<const FigureFrame> frames, double frames_per_second);
 
 /// A frame as a Wavefront OBJ file: an object for each body, in units, with normals; colors stand behind the

@@ -31,13 +31,13 @@ enum class FigureStyle {
     shaded,   ///< bodies in their colours, lit
     outline,  ///< outlines, hidden lines removed
     stick,    ///< lines from joint to joint, or where there are no joints the longest axes
-    depth,    ///< as View::to_view gives it; kNoDepth where there is no body
-    id,       ///< 1 for the frame's first body, 2 for the second ...; 0 where there is none
+    depth,    ///< the depth (z of View::to_view), in units of the scene; kNoDepth where there is no body
+    id,       ///< 1 for the frame's first body, 2 for the second ...; 0 where there is no body
     uv,       ///< the point of the body's texture; (-1, -1) where there is no body
     textured  ///< shaded, with textures
 };
 
-/// The depth of nothing.
+/// The depth of a pixel that shows no body.
 inline constexpr float kNoDepth = 1e30f;
 
 /// How a figure is drawn.
@@ -45,30 +45,31 @@ struct FigureLook {
     FigureStyle style = FigureStyle::shaded;
     Light light;
     bool antialias = true;                 ///< false: colours of the rays through the middle alone
-    std::optional<glm::dvec3> background;  ///< red, green, blue, 0 to 1; else the bands
+    std::optional<glm::dvec3> background;  ///< red, green, blue, 0 to 1; where it is not given, `bands`
     std::vector<BackgroundBand> bands;     ///< the background; by default the frame's, or transparent
-    bool backdrop = false;                 ///< a picture lies before that, as large as what is drawn: the
-                                           ///< source after those of the textures
+    bool backdrop = false;                 ///< a picture as large as the drawn one covers the background; its
+                                           ///< source comes after those of the textures
     BodyMapping mapping = BodyMapping::latlong;
-    Filter filter = Filter::antialias;                   ///< of textures
-    TextureAverage average = TextureAverage::footprint;  ///< of Filter::antialias
-    std::vector<std::string> textures;                   ///< the names of those that are given
-    DrawingOptions lines;                                ///< of outline and stick
+    Filter filter = Filter::antialias;                   ///< how textures are sampled
+    TextureAverage average = TextureAverage::footprint;  ///< how Filter::antialias averages textures
+    std::vector<std::string> textures;                   ///< the names of the textures that are given
+    DrawingOptions lines;                                ///< how the styles outline and stick are drawn
 };
 
-/// Channels of a picture: red, green, blue and alpha, colour multiplied by alpha; u and v; or one.
+/// The number of channels of a picture: four for red, green, blue and alpha (colour multiplied by alpha), two for
+/// u and v, else one.
 int channels_of(FigureStyle style);
 
 /// A frame ready to be drawn, any part of it at a time. Thread safe.
 class FigurePicture {
   public:
-    /// `view`: the origin of its screen is the picture's lower left corner. Throws Error as `outlines` does.
+    /// `view`: the origin of its screen is the picture's lower left corner. Throws Error as outlines() does.
     FigurePicture(FigureFrame frame, const View& view, const Size& size, const FigureLook& look,
                   const ParallelFor& parallel_for = serial_for);
     ~FigurePicture();
     FigurePicture(FigurePicture&&) noexcept;
 
-    /// Fills `pixels`, which has channels_of(style) channels, with the pixels of `box`; 0 beyond the picture.
+    /// Fills `pixels`, which has channels_of(style) channels, with the pixels of `box`; pixels beyond the picture are 0.
     /// `textures`: in the order of their names, then the backdrop, null where one is missing. Bodies whose texture is not there,
     /// or cannot be read, have their own colour. A texture's fourth channel (the second of two) is alpha.
     void draw(const Box& box, const ImageView& pixels, const ParallelFor& parallel_for = serial_for,

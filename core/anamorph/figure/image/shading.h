@@ -15,7 +15,7 @@
 
 namespace anamorph::figure {
 
-/// The formula of the intensity.
+/// The formulas of the intensity.
 enum class Lighting { rasel, lambert, blinn };
 
 /// How bodies are lit.
@@ -26,14 +26,14 @@ struct Light {
     double specular = 0.3, shininess = 30;
 };
 
-/// The direction that light comes from unless another is asked for: from above, as RASEL has it, or from before
-/// the figures, over the observer's left shoulder.
+/// The default direction to the light: from above, as RASEL has it, or from in front of the figures, over the
+/// observer's left shoulder.
 inline glm::dvec3 usual_light(Lighting lighting) {
     return lighting == Lighting::rasel ? glm::dvec3(0, 1, 0) : glm::normalize(glm::dvec3(-1, 2, -2));
 }
 
-/// A colour from 0 to 1 as it is seen where the surface has the unit normal `n` and the eye is in the direction
-/// `v`.
+/// A colour from 0 to 1 as it is lit and seen where the surface has the unit normal `n` and the eye is in the unit
+/// direction `v`.
 inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dvec3& n, const glm::dvec3& v) {
     const double cosine = glm::dot(n, light.toward);
     const double direct = light.lighting == Lighting::rasel ? 0.5 * (1 + cosine) : std::max(0.0, cosine);

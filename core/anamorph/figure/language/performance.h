@@ -33,9 +33,9 @@
 
 namespace anamorph::figure {
 
-/// What a performance reports, and how much it keeps.
+/// Options of a performance: its messages, and the memory that it uses.
 struct PerformanceOptions {
-    /// What `print` says and warnings, one line each, once for each frame however often it is performed.
+    /// Receives the output of `print` and warnings, one line each, once for each frame however often it is performed.
     std::function<void(const std::string& line)> message;
     std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };
@@ -45,7 +45,7 @@ struct PerformanceOptions {
 /// the script where performing it fails.
 class Performance final : public Motion {
   public:
-    /// `program`: that of a script without errors.
+    /// `program`: the program of a script without errors.
     explicit Performance(Program program, PerformanceOptions options = {});
     ~Performance() override;
     Performance(Performance&&) noexcept;

@@ -14,16 +14,16 @@
 
 namespace anamorph::figure {
 
-/// Two ways to read scripts and to perform them.
+/// The two ways to read scripts and to perform them.
 enum class Dialect {
     classic,  ///< as the programs of 2003 ran scripts, but for `abut` and `touch`, which end in exact contact
     strict    ///< as the language is documented; see script.h and performance.h for what differs
 };
 
-/// How the share of an action is spread over its frames.
+/// How an action is distributed over its frames.
 enum class Distribution { repeat, linear, quadratic, cubic, accelerate, decelerate, call };
 
-/// The words of the language that do something.
+/// The actions of the language.
 enum class Action {
     abduct,
     abut,
@@ -67,19 +67,19 @@ enum class Action {
     touch
 };
 
-/// What an operand is, and so which table its name is in.
+/// The kind of an operand, which says in which table its name is.
 enum class OperandKind { number, variable, ellipsoid, joint, figure, axis, subroutine, image };
 
-/// What stands behind an action: a number, or a name by its position.
+/// An operand of an action: a number, or a name by its position.
 struct Operand {
     OperandKind kind = OperandKind::number;
-    double number = 0;  ///< of a number
-    int index = 0;      ///< of all others: the position in the table of its kind; axes are 0, 1, 2
+    double number = 0;  ///< the value of an operand that is a number
+    int index = 0;      ///< of any other, the position in the table of its kind; axes are 0, 1, 2
 
     bool operator==(const Operand&) const = default;
 };
 
-/// Where something was written: a position in Program::files, and the line and column from 1.
+/// A place in a script: a position in Program::files, and the line and column from 1.
 struct ScriptPosition {
     int file = 0, line = 0, column = 0;
 };
@@ -93,38 +93,38 @@ struct Movement {
     ScriptPosition position;
 };
 
-/// `ellipsoid NAME x y z`.
+/// The declaration `ellipsoid NAME x y z`.
 struct EllipsoidDeclaration {
     std::string name;
     glm::dvec3 axes{1.0};  ///< half the lengths
     ScriptPosition position;
 };
 
-/// `joint NAME`, with its `limit` if there is one.
+/// The declaration `joint NAME`, with its `limit` if there is one.
 struct JointDeclaration {
     std::string name;
-    bool attached = false;  ///< it is made by `attach`, and is not there before
+    bool attached = false;  ///< the joint is made by `attach`, and is not there before
     int first = 0, second = 0;
     glm::dvec3 first_offset{0.0}, second_offset{0.0};  ///< from the centre of each, at rest
     std::optional<std::array<double, 6>> limit;        ///< x, y, z: smallest and largest angle
     ScriptPosition position;
 };
 
-/// `figure NAME n ellipsoids`.
+/// The declaration `figure NAME n ellipsoids`.
 struct FigureDeclaration {
     std::string name;
     std::vector<int> ellipsoids;  ///< as listed; empty when `detach` makes it
     ScriptPosition position;
 };
 
-/// `subroutine NAME ... endsub NAME`.
+/// The declaration `subroutine NAME ... endsub NAME`.
 struct Subroutine {
     std::string name;
     std::vector<Movement> movements;
     ScriptPosition position;
 };
 
-/// All that a script and its libraries say.
+/// The contents of a script and its libraries.
 struct Program {
     Dialect dialect = Dialect::classic;
     std::vector<std::string> files;
@@ -137,15 +137,15 @@ struct Program {
     int speed = 1;  ///< > 0 multiplies frame numbers; < 0: only each |speed|th is shown
     std::optional<std::array<int, 2>> view;  ///< frames view[0] < f <= view[1] are shown
 
-    /// "walk.n:12:5"
+    /// A place as text: "walk.n:12:5".
     std::string where(const ScriptPosition& position) const;
-    /// " (included at walk.n:3:1)", one for each file between; nothing of a script itself.
+    /// Where a file was included: " (included at walk.n:3:1)", one for each file between; empty for the script itself.
     std::string included_from(int file) const;
 };
 
-/// The word of the language.
+/// The name of an action in the language.
 const char* name_of(Action action);
-/// The word of the language.
+/// The name of a distribution in the language.
 const char* name_of(Distribution distribution);
 
 }  // namespace anamorph::figure

@@ -30,36 +30,36 @@
 
 namespace anamorph::figure {
 
-/// Longer texts are refused.
+/// The largest size of a script and all that it includes, in bytes; longer ones are refused.
 inline constexpr std::size_t kMaxScriptText = std::size_t{64} << 20;
-/// Programs with more of anything than this are refused.
+/// The largest number of items of any kind in a program; programs with more are refused.
 inline constexpr std::size_t kMaxScriptItems = std::size_t{1} << 20;
 
-/// An error makes a script unfit to be performed, a warning does not.
+/// How severe a diagnostic is: a script with an error cannot be performed, one with warnings can.
 enum class Severity { warning, error };
 
 /// What is wrong with a script, and where.
 struct Diagnostic {
     Severity severity = Severity::error;
     std::string file;
-    int line = 0, column = 0;     ///< from 1; bytes
-    std::string found, expected;  ///< empty where they do not apply
+    int line = 0, column = 0;     ///< counted from 1; columns are bytes
+    std::string found, expected;  ///< the words found and expected; empty where they do not apply
     std::string message;
     std::string included_from;  ///< where an included file is included; empty otherwise
 
-    /// One line: "walk.n:12:5: error: found \"hed\", expected an ellipsoid".
+    /// The diagnostic as one line: "walk.n:12:5: error: found \"hed\", expected an ellipsoid".
     std::string text() const;
 };
 
-/// How a script is read, and where it finds others.
+/// How a script is read, and how it finds the files that it includes.
 struct ScriptOptions {
     Dialect dialect = Dialect::classic;
-    /// The text of an included file; nothing when there is none of that name.
+    /// Returns the text of an included file; nothing where there is no file of that name.
     std::function<std::optional<std::string>(const std::string& name)> include;
     std::vector<std::string> libraries;  ///< names of files to include ahead of the script
 };
 
-/// What was read, and what is wrong with it.
+/// A program as it was read, and the diagnostics.
 struct Script {
     Program program;  ///< to be performed only when ok()
     std::vector<Diagnostic> diagnostics;
@@ -67,10 +67,11 @@ struct Script {
     bool ok() const;
 };
 
-/// Never throws for what a script says: that is in the diagnostics, several of them where it can go on.
+/// Reads a script. Never throws for errors of the script: those are in the diagnostics, several of them where reading
+/// can go on.
 Script parse_script(std::string_view text, std::string_view name, const ScriptOptions& options = {});
 
-/// The program alone. Throws Error with the first error's text.
+/// Reads a script and returns the program alone. Throws Error with the text of the first error.
 Program parse_program(std::string_view text, std::string_view name, const ScriptOptions& options = {});
 
 }  // namespace anamorph::figure

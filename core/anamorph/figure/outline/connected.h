@@ -12,21 +12,23 @@
 
 namespace anamorph::figure {
 
-/// Along a common tangent, from its point of contact with the first body's limb to that with the second's.
+/// A stroke along a common tangent of two limbs, from its point of contact with the first body's limb to its point of
+/// contact with the second's.
 struct ConnectingStroke {
-    double first_angle = 0, second_angle = 0;  ///< of the points of contact, on the limbs
-    SeenLine line;                             ///< between them in space; its two bodies do not hide it
+    double first_angle = 0, second_angle = 0;  ///< angles of the points of contact on the limbs, in radians
+    SeenLine line;                             ///< the stroke in space; its two bodies do not hide it
 };
 
-/// The outlines less the arcs inside, with the strokes, are the outline of both bodies' hull on the screen.
+/// The connection of two outlines: without the arcs inside and with the strokes, they are the outline of both bodies'
+/// hull on the screen.
 struct Connection {
     int first = 0, second = 0;              ///< positions of the bodies
     std::vector<ConnectingStroke> strokes;  ///< two as a rule; none where one outline is around the other
-    std::vector<Arc> first_inside, second_inside;  ///< of the limbs, inside the hull
+    std::vector<Arc> first_inside, second_inside;  ///< the arcs of the limbs inside the hull
 };
 
-/// A connection for each joint whose bodies' outlines are both of kind `whole`. `outlines` are those of
-/// `bodies` in `view`. Throws Error as `outlines` does, and for a joint of bodies that are not there.
+/// Finds a connection for each joint whose bodies' outlines are both of kind `whole`. `outlines` are those of
+/// `bodies` in `view`. Throws Error as outlines() does, and for a joint of bodies that are not there.
 std::vector<Connection> connections(std::span<const Joint> joints, std::span<const Ellipsoid> bodies,
                                     const Outlines& outlines, const View& view,
                                     const ParallelFor& parallel_for = serial_for);

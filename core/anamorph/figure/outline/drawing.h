@@ -15,18 +15,18 @@
 
 namespace anamorph::figure {
 
-/// What becomes of hidden lines; draw: bodies are transparent.
+/// How hidden lines are drawn: not at all, dashed, or like visible ones, as if bodies were transparent.
 enum class HiddenLines { remove, dash, draw };
-/// What is drawn instead of outlines: the longest axis of each body, or lines from joint to joint.
+/// The sticks that are drawn instead of outlines: none, the longest axis of each body, or lines from joint to joint.
 enum class Sticks { none, axes, joints };
 
 // The numbers that users set of drawings, beside those of figure_rows.h.
-/// Maximum chord error, in pixels. Files have four decimals, whose rounding is less than a hundredth of the
+/// The maximum chord error, in pixels. Files have four decimals, whose rounding is less than a hundredth of the
 /// least tolerance.
 inline constexpr NumberRow kDrawingTolRow{"tol", kOutlineTolRow.standard, 0.01};
-/// Width of lines, in pixels.
+/// The width of lines, in pixels.
 inline constexpr NumberRow kLineWidthRow{"line-width", 1, 0.01, 1000};
-/// The gap on either side of a nearer line, in pixels.
+/// The width of the gap on either side of a nearer line, in pixels.
 inline constexpr NumberRow kHaloRow{"halo", 0, 0, 1000};
 
 /// How a frame is drawn.
@@ -38,7 +38,7 @@ struct DrawingOptions {
     double tol = kDrawingTolRow.standard;        ///< maximum chord error; pixels
     double line_width = kLineWidthRow.standard;  ///< pixels
     double halo = kHaloRow.standard;             ///< the gap on either side of a nearer line, in pixels
-    bool colors = false;                         ///< of the bodies; black otherwise
+    bool colors = false;                         ///< lines have the colors of the bodies; else black
     bool fill = false;                           ///< bodies are filled with their colors, from far to near
 };
 
@@ -48,26 +48,26 @@ enum class StrokeKind { visible, hidden, stick, dot, fill };
 /// A line on the page, or the closed line around what is filled.
 struct Stroke {
     StrokeKind kind = StrokeKind::visible;
-    std::vector<glm::dvec2> points;  ///< on the page, pixels from its upper left, y down; a dot's is one
-    std::string body;                ///< its name
-    glm::dvec3 color{0};             ///< 0 to 255
+    std::vector<glm::dvec2> points;  ///< on the page, pixels from its upper left, y down; a dot has one point
+    std::string body;                ///< the name of the body that the stroke belongs to
+    glm::dvec3 color{0};             ///< red, green and blue, 0 to 255
     double depth = 0;
-    int position = -1;  ///< of its body in the frame
-    /// Parts of the line beside which there is a gap, where there are gaps: all of it but where a line of a body that is joined
-    /// to its own ends at it.
+    int position = -1;  ///< position of the body in the frame
+    /// The parts of the line beside which there is a gap, where gaps are drawn: all of the line, except where the line of a
+    /// body joined to this one ends at it.
     std::vector<std::vector<glm::dvec2>> halo;
 };
 
 /// A frame on a page.
 struct Drawing {
     int frame = 0;
-    glm::dvec2 size{0.0};  ///< of the page
+    glm::dvec2 size{0.0};  ///< of the page, in pixels
     double line_width = 1, halo = 0;
-    std::vector<Stroke> strokes;  ///< what is filled first, then hidden ones, each from far to near
+    std::vector<Stroke> strokes;  ///< fills, then hidden strokes, then the others; each from far to near
 };
 
-/// The frame as `view` sees it, on a page of `size` pixels whose lower left corner is the origin of the view's
-/// screen. Throws Error as outlines and levels_of_detail do.
+/// Draws a frame as `view` sees it, on a page of `size` pixels whose lower left corner is the origin of the view's
+/// screen. Throws Error as outlines() and levels_of_detail() do.
 Drawing draw(const FigureFrame& frame, const View& view, const glm::dvec2& size,
              const DrawingOptions& options, const ParallelFor& parallel_for = serial_for);
 

@@ -9,7 +9,7 @@
 
 namespace anamorph::figure {
 
-/// A rectangle around figures as one looks at them, about the view's middle and in its scale 1.
+/// A rectangle on the screen around figures, relative to the view's middle, as it is with the view's scale 1.
 struct SeenExtent {
     glm::dvec2 least{HUGE_VAL}, most{-HUGE_VAL};
 
@@ -17,7 +17,7 @@ struct SeenExtent {
 };
 
 /// Widens `extent` by the outlines of a frame's bodies, exactly. In perspective a body that reaches behind
-/// View::near is left out: no picture holds it.
+/// View::near is left out, as no picture shows all of it.
 void add_seen_extent(const FigureFrame& frame, const View& view, SeenExtent& extent);
 
 /// Moves and scales a view so that `extent` fills a picture of `size` pixels but for a margin of a twentieth

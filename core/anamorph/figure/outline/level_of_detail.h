@@ -14,16 +14,17 @@ namespace anamorph::figure {
 /// How a body is drawn, from least to most.
 enum class Detail : unsigned char { none, dot, line, ellipse, body };
 
-/// What a body is worth follows from the width of its outline on the screen: a `dot` where it is nowhere
-/// wider than `lod`, a `line` (its longest axis) where it is so in one direction, an `ellipse` (a flat
-/// outline) up to `body_factor` times `lod` wide, and a whole `body` beyond. `none`: behind the observer.
+/// The limits by which the level of detail of a body follows from the width of its outline on the screen: a `dot` where
+/// the outline is nowhere wider than `lod`, a `line` (its longest axis) where that holds in one direction only, an
+/// `ellipse` (a flat outline) up to `body_factor` times `lod` wide, and a whole `body` beyond. A body behind the
+/// observer is `none`.
 struct DetailOptions {
     double lod = kLevelOfDetailRow.standard;  ///< pixels; 0: all bodies whole
     double body_factor = 16;
 };
 
-/// The details, one for each body. A body that reaches nearer than View::near is drawn whole. Throws Error
-/// as outlines does, and when an option is negative or not a number.
+/// Finds the level of detail of each body. A body that extends nearer than View::near is drawn whole. Throws Error as
+/// outlines() does, and where an option is negative or not a number.
 std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const View& view,
                                      const DetailOptions& options = {});
 

@@ -37,22 +37,22 @@ struct Arc {
 enum class OutlineKind : std::uint8_t {
     whole,       ///< the limb lies before the observer
     cut,         ///< in perspective: part of the limb is nearer than View::near, or behind the eye
-    behind,      ///< in perspective: all of it is
+    behind,      ///< in perspective: all of the limb is nearer than View::near, or behind the eye
     around_eye,  ///< in perspective: the eye is inside the body
 };
 
 /// The limb of a body, and which arcs of it are seen.
 struct Outline {
     OutlineKind kind = OutlineKind::whole;
-    Ellipse<glm::dvec3> limb;    ///< in the scene; what the arcs are angles of
+    Ellipse<glm::dvec3> limb;    ///< in the scene; arcs are angles on it
     Ellipse<glm::dvec3> viewed;  ///< the limb as View::to_view sees it, angle for angle
-    /// The limb on the screen, pixels; of kind `whole` only. In perspective its angle is `screen_angle`.
+    /// The limb on the screen, in pixels; set for kind `whole` only. In perspective its angles are those of screen_angle().
     Ellipse<glm::dvec2> screen;
     std::vector<Arc> visible, hidden;  ///< sorted, disjoint; together all of the limb but what `near` cuts
 
-    /// The limb's point at `angle`, in pixels.
+    /// The point on the screen, in pixels, of the limb's point at `angle`.
     glm::dvec2 on_screen(double angle, const View& view) const { return view.to_screen(viewed(angle)); }
-    /// The angle on `screen` of the limb's point at `angle`.
+    /// The angle on `screen` of the limb's point at `angle`, in radians.
     double screen_angle(double angle, const View& view) const;
     /// The angle on the limb of the point at `screen_angle` of `screen`.
     double limb_angle(double screen_angle, const View& view) const;
@@ -62,9 +62,9 @@ struct Outline {
 struct CrossingCurve {
     int first = 0, second = 0;       ///< positions of the bodies
     std::vector<glm::dvec3> points;  ///< in the scene, on both surfaces; the last is joined to the first
-    /// Parts of the polyline: 2.25 is the point a quarter of the way from points[2] to points[3]. As arcs,
-    /// with the number of points for 2 pi. They are found on the curve itself, and on the polyline lie beside
-    /// where they are on it. Parts shorter than a sixteenth of tol may be missed.
+    /// The visible and the hidden parts of the polyline: 2.25 is the point a quarter of the way from points[2] to
+    /// points[3]. They are like arcs, with the number of points for 2 pi. Their ends are found on the curve itself, and on
+    /// the polyline lie beside those. Parts shorter than a sixteenth of tol may be missed.
     std::vector<Arc> visible, hidden;
 };
 
@@ -72,15 +72,15 @@ struct CrossingCurve {
 struct OutlineOptions {
     bool hide = true;                      ///< false: bodies are transparent, as VISIB draws them
     bool crossings = false;                ///< also the curves in which bodies pass through each other
-    bool keep_hidden = true;               ///< false: such curves of which nothing is seen are left out
+    bool keep_hidden = true;               ///< false: curves of which nothing is seen are left out
     double tol = kOutlineTolRow.standard;  ///< maximum chord error of those curves, in pixels
-    /// Names of the bodies for messages; empty: their positions.
+    /// The names of the bodies for messages; where it is empty, messages give their positions.
     std::vector<std::string> names;
 };
 
 /// The outlines of a scene.
 struct Outlines {
-    std::vector<Outline> bodies;  ///< one a body, in their order
+    std::vector<Outline> bodies;  ///< one for each body, in their order
     std::vector<CrossingCurve> crossings;
 };
 
@@ -92,11 +92,10 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
 Outlines outlines(const FigureFrame& frame, const View& view, OutlineOptions options = {},
                   const ParallelFor& parallel_for = serial_for);
 
-/// Angles from arc.begin to arc.end between which chords stay within `tol` pixels of the limb's image on the
-/// screen. Throws Error when tol is out of the range of kOutlineTolRow, or asks
-/// for more than a million chords.
+/// Finds angles from arc.begin to arc.end between which chords stay within `tol` pixels of the limb's image on the
+/// screen. Throws Error when tol is out of the range of kOutlineTolRow, or asks for more than a million chords.
 std::vector<double> chord_angles(const Outline& outline, const Arc& arc, const View& view, double tol);
-/// The points at those angles, on the screen.
+/// The points on the screen, in pixels, at the angles that chord_angles() finds.
 std::vector<glm::dvec2> chords(const Outline& outline, const Arc& arc, const View& view, double tol);
 
 /// A straight line in the scene, and how much of it is seen: parts as arcs with 0 at `from` and 1 at `to`.
@@ -106,8 +105,8 @@ struct SeenLine {
     std::vector<Arc> visible, hidden;
 };
 
-/// Finds what the bodies hide of lines. `ignored[i]`, where given, lists bodies that do not hide line i.
-/// Throws Error as outlines does, and when an end of a line is not finite or larger than 1e25.
+/// Finds the parts of lines that bodies hide. `ignored[i]`, where given, lists bodies that do not hide line i.
+/// Throws Error as outlines() does, and when an end of a line is not finite or larger than 1e25.
 void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, const View& view,
                 const std::vector<std::vector<int>>& ignored = {},
                 const ParallelFor& parallel_for = serial_for);

@@ -20,17 +20,17 @@ struct Sphere {
 struct SphereOptions {
     /// Maximum distance of the body's surface from the spheres, in units of the scene.
     double tol = kSphereTolRow.standard;
-    int most_spheres = 10000;  ///< of one body; where tol needs more, `deviation` says what was reached
+    int most_spheres = 10000;  ///< for one body; where tol needs more, `deviation` says what was reached
 };
 
 /// The spheres that stand for a body.
 struct SphereFill {
-    std::vector<Sphere> spheres;  ///< the largest inside the body about their centres, all of which touch it
-    double deviation = 0;         ///< no point of the surface is farther than this from the nearest sphere
+    std::vector<Sphere> spheres;  ///< the largest about their centres in the body; all touch its surface
+    double deviation = 0;         ///< the largest distance of the surface from the nearest sphere
 };
 
-/// The spheres of a body with half-axes a >= b >= c have their centres on its medial surface, an ellipse with
-/// half-axes (a^2 - c^2) / a and (b^2 - c^2) / b: a line where b = c, a point where all are equal. Throws
+/// Fills a body with spheres. Those of a body with half-axes a >= b >= c have their centres on its medial surface, an
+/// ellipse with half-axes (a^2 - c^2) / a and (b^2 - c^2) / b: a line where b = c, a point where all are equal. Throws
 /// Error when a value is not finite or larger than 1e25, tol is not positive or most_spheres is less than 1.
 SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options = {});
 
