@@ -254,6 +254,26 @@ TEST(Morph, ThreePicturesMixByTheirWeights) {
     EXPECT_THROW(morphed_picture(features, {kSize, kSize, kSize}, kSize, options), Error);
 }
 
+TEST(Morph, AsManySourcesAreGivenAsThereAreShapes) {
+    const FloatPicture a = noise(kWidth, kHeight, 3, 1);
+    const MemorySource sa(a.source());
+    FloatPicture to(kWidth, kHeight, 3, PixelType::float32);
+    MorphOptions options;
+    options.t = 0;  // B is not read, but counts
+    const auto morph = morphed_picture(face(), {kSize, kSize}, kSize, options);
+    const auto message = [&](const std::vector<const Source*>& sources) -> std::string {
+        try {
+            morph.draw(sources, {0, 0, kWidth, kHeight}, to.view());
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_EQ(message({&sa, nullptr}), "no error");
+    EXPECT_EQ(message({&sa}), "pictures=1: must be 2");
+    EXPECT_EQ(message({&sa, nullptr, nullptr}), "pictures=3: must be 2");
+}
+
 TEST(Morph, BadParametersAreNamed) {
     const auto message = [](MorphOptions options, Size b = kSize) -> std::string {
         try {

@@ -375,7 +375,7 @@ TEST(ReprojectRequest, ErrorsOfLensesAndSizes) {
                 HasSubstr("fov=0: must be a number above 0, at most 360"));
     EXPECT_THAT(error_of([] { request({{"to", "cubemap"}, {"fov", "80"}}); }), HasSubstr("fov=80"));
     EXPECT_THAT(error_of([] { request({{"to", "cubemap"}, {"size", "8x8"}}); }), HasSubstr("size=8x8"));
-    EXPECT_THAT(error_of([] { request({{"from", "cubemap"}}); }), HasSubstr("srcsize=2048x1024"));
+    EXPECT_THAT(error_of([] { request({{"from", "cubemap"}}); }), HasSubstr("source size=2048x1024"));
     EXPECT_THAT(error_of([] {
                     request({{"from", "rectilinear"}, {"srcfov", "190"}});
                 }),

@@ -35,6 +35,9 @@ void check_source(const std::string& name, const Source* source, const Chart& ch
 
 /// What draw() was given fits together. Returns one of the sources that are read, or null if none is.
 const Source* check(const Picture& picture, const Sources& sources, const ImageView& view) {
+    if (picture.source_count && sources.size() != static_cast<std::size_t>(*picture.source_count))
+        throw Error("pictures", std::to_string(sources.size()),
+                    "must be " + std::to_string(*picture.source_count));
     const Source* first = nullptr;
     for (const Picture::Map& map : picture.maps)
         for (const Picture::Layer& layer : map.layers) {

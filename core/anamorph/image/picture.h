@@ -70,6 +70,8 @@ struct Picture {
     std::function<void(const PixelRows& pixels)> overlay;
     /// A source that is the picture as it stands, pixel for pixel and whatever the filter.
     std::optional<int> same_as;
+    /// Where it is given: how many sources draw() has to be given, null or not.
+    std::optional<int> source_count = {};
     /// Where it is given: what the picture says of itself beyond what was reached, over all of it.
     std::function<Attributes(const ParallelFor& parallel_for)> says = {};
     /// Does reached() compute every pixel, so that it takes as long as drawing all of them?
@@ -92,7 +94,7 @@ struct Picture {
 
     /// Draws the pixels of `box` (of the picture) to `view`, whose pixel (0, 0) is (box.x0, box.y0). Sources
     /// that no layer names may be null, and all but for colour. False when one could not be read: the picture
-    /// is then incomplete. Throws Error where sizes or channels do not fit.
+    /// is then incomplete. Throws Error where sizes, channels or the number of sources do not fit.
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for = serial_for) const;
     /// Draws a picture of one source, or, with null, of none.

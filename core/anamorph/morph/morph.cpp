@@ -141,15 +141,16 @@ Picture morphed_picture(const std::shared_ptr<const Features>& features, const s
     check_sizes(pictures, target);
     const std::vector<double> shape =
         mixture(options.shape_weights, options.t, features->shapes(), "shape_weights", "t");
-    const std::vector<double> color = color_weights(options, features->shapes());
     const auto map =
         std::make_shared<const FeatureMap>(*features, pictures, target, shape,
                                            LineWeights{options.weight_a, options.weight_b, options.weight_p});
+    const std::vector<double> color = color_weights(options, features->shapes());
     Picture picture;
     picture.maps = maps_of(map, color, options);
     picture.filter = options.filter;
     picture.output = options.output;
     picture.same_as = untouched(*map, shape, color);
+    picture.source_count = map->shapes();
     if (options.lines)
         picture.overlay = [features, map](const PixelRows& pixels) {
             draw_features(*features, *map, pixels);

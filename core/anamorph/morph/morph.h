@@ -52,7 +52,7 @@ std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictur
 ///
 /// At t = 0 the shape is A's and the colours too: the picture is A, bit for bit at tol 0 where the sizes are
 /// the same (with filters that keep a picture that is read at its pixels' centres), and B at t = 1. A picture
-/// whose colour has weight 0 is not read (Picture::reads).
+/// whose colour has weight 0 is not read (Picture::reads), and may be null; draw() is given one source a shape.
 ///
 /// Throws Error: a line that has no length at t, named; a tolerance below 0; parameters out of range; sizes that do not fit.
 Picture morphed_picture(const std::shared_ptr<const Features>& features, const std::vector<Size>& pictures,

@@ -128,9 +128,8 @@ Picture picture_of(const MosaicRequest& request) {
     Picture picture = mosaic_picture(request.view(), request.stack, request.options, request.circle);
     if (request.distortion) picture.value = distortion_of(request.view(), request.stack, *request.nearest);
     if (request.nearest)
-        picture.says =
-            [most = request.stack.vertical_distortion(*request.nearest)](const ParallelFor&) -> Attributes {
-            return {{"anamorph:vertical_distortion", most}};
+        picture.says = [stack = request.stack, nearest = *request.nearest](const ParallelFor&) -> Attributes {
+            return {{"anamorph:vertical_distortion", stack.vertical_distortion(nearest)}};
         };
     return picture;
 }
