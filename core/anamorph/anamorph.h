@@ -15,5 +15,5 @@
 #include "anamorph/projector.h"
 #include "anamorph/version.h"
 
-/// All that the libraries declare, but for figures, machines and surfaces, which have namespaces in it.
+/// All that the libraries declare; figures have the namespace anamorph::figure in it.
 namespace anamorph {}

@@ -2,6 +2,7 @@
 // What pictures of the map itself say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -88,6 +89,26 @@ TEST(Draw, WhatStandsBeyondTheEdgesIsDrawn) {
         EXPECT_NEAR(drawn.back(), beyond, 1e-6);
         EXPECT_NEAR(drawn[350 * 1000 + 500], 1, 1e-6);
     }
+}
+
+TEST(Draw, NothingIsWrittenBeyondTheView) {
+    const Panorama map(Chart(Projection::equirectangular, 64, 32),
+                       Chart(Projection::rectilinear, 40, 30, 90));
+    std::vector<float> texels(64 * 32, 1), pixels(20 * 30, -1);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 32, 1));
+    const auto small =
+        packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 20, 15, 1);
+    const Picture picture = reprojected_picture(map, {});
+    EXPECT_TRUE(picture.draw(&source, {0, 0, 20, 15}, small));
+    for (const Box& box : {Box{0, 0, 40, 30}, Box{0, 0, 21, 15}, Box{0, 0, 20, 16}, Box{-5, 0, 20, 15}}) {
+        std::fill(pixels.begin(), pixels.end(), -1.0f);
+        EXPECT_THROW(picture.draw(&source, box, small), Error);
+        EXPECT_EQ(std::count(pixels.begin(), pixels.end(), -1.0f), 600);
+    }
+    // Beyond the picture pixels become 0.
+    EXPECT_TRUE(picture.draw(&source, {-20, -15, 0, 0}, small));
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), 0.0f), 300);
 }
 
 }  // namespace

@@ -130,8 +130,8 @@ struct Operation {
     std::vector<std::string> sources;  ///< keys of the images it draws; may be none
     std::size_t least_sources;
     Example example;  ///< for sources of any kind that are as large
-    /// Makes pictures of what it is given. Throws Error.
-    std::unique_ptr<const Pictures> (*read)(const OperationInput& input);
+    /// What read() calls.
+    std::unique_ptr<const Pictures> (*make)(const OperationInput& input);
 
     /// The key of the side file that is by default the recipe's name without its ending; may be none.
     std::string main_file = {};
@@ -140,6 +140,10 @@ struct Operation {
     /// The files that these name; the picture changes with them. May be null. Throws Error.
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
                           const SideFileReader& reader) = nullptr;
+
+    /// Makes pictures of what it is given: of `least_sources` sources or more, up to one for each of its keys, and of the side files
+    /// that the values of keys of type file and image name, which the host has entered by these keys. Throws Error.
+    std::unique_ptr<const Pictures> read(const OperationInput& input) const;
 };
 
 /// All operations, in the order of list.h.
