@@ -1,16 +1,39 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# What tests/run.sh leaves out because it takes hours: long tests, longer fuzzing, sanitizers through all hosts, clang and
-# clang-tidy. It says how long each step took; the last line is ctest's own summary.
+# What tests/run.sh leaves out because it takes hours: long tests, longer fuzzing, sanitizers through all hosts, clang, what the
+# tests of the core cover, clang-tidy, and what became of the last version's binary interface. It says how long each step took; the
+# last line is ctest's own summary. tests/nightly.md has the times of a run.
 . "$(dirname "$0")/steps.sh"
+tests/install_packages.sh nightly
 
 # Each file by itself, so that what it forgets to include is found, and clang-tidy has a command for each.
 clang="build/clang"
 build_clang() {
-    cmake --preset release -B "$clang" -DCMAKE_CXX_COMPILER=clang++ -DANAMORPH_UNITY=OFF && cmake --build "$clang" -j "$jobs"
+    cmake --preset release -B "$clang" -DCMAKE_CXX_COMPILER=clang++ -DANAMORPH_UNITY=OFF \
+        -DCMAKE_CXX_FLAGS="-fprofile-instr-generate -fcoverage-mapping" && cmake --build "$clang" -j "$jobs"
 }
 test_clang() {
-    ctest --test-dir "$clang" -j "$jobs" --no-tests=error --no-label-summary -L core
+    LLVM_PROFILE_FILE="$PWD/$clang/profiles/%2m.profraw" \
+        ctest --test-dir "$clang" -j "$jobs" --no-tests=error --no-label-summary -L core
+}
+# Lines and branches of each file of the core that its tests run; the log has the table.
+coverage() {
+    llvm-profdata merge -sparse "$clang"/profiles/*.profraw -o "$clang/coverage.profdata" &&
+        llvm-cov report "$clang/tests/core/anamorph_core_tests" -instr-profile="$clang/coverage.profdata" core/anamorph
+}
+# VTK's modules, the only shared libraries, beside those of the last version, where there is one: nothing of a version that
+# differs in its patch alone may be gone.
+abi() {
+    local tag old library
+    tag="$(git describe --tags --abbrev=0 --match 'v*' 2>/dev/null)" || return 0
+    grep -q "project(Anamorph VERSION $(sed 's/^v//; s/\.[^.]*$//' <<<"$tag")\." CMakeLists.txt || return 0
+    old="$PWD/build/abi"
+    rm -rf "$old" && mkdir -p "$old" && git archive "$tag" | tar -x -C "$old" || return
+    (cd "$old" && with_vtk cmake --preset vtk -DVTK_ROOT="$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3 \
+        -DANAMORPH_TESTS=OFF && cmake --build --preset vtk -j "$jobs") || return
+    for library in "$old"/build/vtk/lib*/libAnamorph*.so; do
+        abidiff --no-added-syms "$library" "build/vtk/${library#"$old/build/vtk/"}" || return
+    done
 }
 # Kernels are written as Highway is, whose macros and names clang-tidy does not know.
 tidy() {
@@ -27,6 +50,7 @@ step build-release build release
 step test-release-long run_tests release -L nightly
 step build-vtk build_vtk
 step test-vtk-long with_vtk run_tests vtk -L nightly
+step abi abi
 step build-paraview build_paraview
 step test-paraview-long run_tests paraview -L nightly
 step build-fuzz build fuzz
@@ -37,5 +61,7 @@ step build-tsan build tsan
 step test-tsan run_tests tsan
 step build-clang build_clang
 step test-clang test_clang
+step coverage coverage
 step clang-tidy tidy
+tail -1 "$log_dir/coverage.txt"
 print_summaries test-vtk-long test-paraview-long test-asan test-tsan test-release-long

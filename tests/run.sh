@@ -5,7 +5,7 @@
 . "$(dirname "$0")/steps.sh"
 
 check_format() {
-    find core oiio_ops plugins tests vtk_filters -name '*.h' -o -name '*.cpp' -o -name '*.cxx' |
+    find core examples oiio_ops plugins tests vtk_filters -name '*.h' -o -name '*.cpp' -o -name '*.cxx' |
         xargs clang-format --dry-run -Werror
 }
 

@@ -8,7 +8,7 @@
 
 namespace anamorph {
 
-/// An allocator of memory aligned to cache lines of 64 bytes.
+/// An allocator of memory that begins with a line of the cache.
 template <class T>
 struct LineAllocator {
     using value_type = T;

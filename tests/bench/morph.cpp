@@ -477,7 +477,7 @@ void run_frame(Bench& bench) {
     for (Frame& f : frames) {
         f.options.filter = Filter::bilinear;
         timed.push_back({[&, f] {
-                             Morph(scene.features, sizes, size, size, f.options)
+                             morphed_picture(scene.features, sizes, {size, size}, f.options)
                                  .draw({&source_a, &source_b}, {0, 0, size, size}, to, bench.threads());
                          },
                          bench.settings().threads});

@@ -2,7 +2,7 @@
 // Panorama reprojection: speed against error.
 //
 // Sources are 8192 pixels wide (less for small pictures). The views of one source are measured in the same
-// rounds. Schemes: automatic, blocks, residual and exact draw a fresh Reprojection each time,
+// rounds. Schemes: automatic, blocks, residual and exact plan a fresh picture each time,
 // planning included; automatic_kept draws with a plan made before. Rivals: pano_rivals.h.
 //
 // Errors are distances of the source points used from Panorama::exact<long double>, over all pixels. The
@@ -157,8 +157,7 @@ void fill_with_scene(const Picture& picture, int width, int height, const Parall
 
 void draw_ours(const View& view, const Source& source, const ReprojectOptions& options, const ImageView& to,
                const ParallelFor& parallel_for) {
-    const Reprojection reprojection(view.map, options);
-    if (!reprojection.draw(&source, view.box(), to, parallel_for))
+    if (!reprojected_picture(view.map, options).draw(&source, view.box(), to, parallel_for))
         throw Error("the source could not be read");
 }
 
@@ -218,7 +217,7 @@ class Scene {
         plan.tol = options.tol;
         const View& view = *c.view;
         c.points = [this, &view, plan] { return plan_points(PanoramaPlan(view.map, plan), all()); };
-        const Reached reached = Reprojection(view.map, options).reached(all());
+        const Reached reached = reprojected_picture(view.map, options).reached(all());
         c.options = options;
         c.one_tap = options.filter == Filter::bilinear;
         c.bound = reached.max_error;
@@ -262,9 +261,8 @@ class Scene {
         options.filter = Filter::bilinear;
         options.tol = kDefaultTol;
         Contender kept{&view, "automatic_kept", options.tol, m_settings.threads, {}};
-        auto reprojection = std::make_shared<Reprojection>(view.map, options);
-        kept.draw = [this, &view, reprojection] {
-            reprojection->draw(&m_source, view.box(), target(view), threads());
+        kept.draw = [this, &view, picture = reprojected_picture(view.map, options)] {
+            picture.draw(&m_source, view.box(), target(view), threads());
         };
         describe_ours(kept, options);
         add(std::move(kept));
@@ -420,7 +418,7 @@ class Scene {
         std::vector<float> drawn(points.size());
         const ImageView picture = packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32,
                                               view.width(), view.height(), 1);
-        Reprojection(view.map, options).draw(nullptr, view.box(), picture, all());
+        reprojected_picture(view.map, options).draw(nullptr, view.box(), picture, all());
         double worst = 0;
         std::size_t at = 0;
         for (std::size_t k = 0; k < points.size(); ++k) {

@@ -43,10 +43,10 @@ Point<Real> source_point(int side, int i, int j) {
 /// Of the panorama of circle kMiddle, to the rounding of float.
 Accuracy accuracy(int side, const ConcentricStack& stack, ReprojectOptions options, Pool& pool) {
     options.output = Output::stmap;
-    const ConcentricView view(view_of(side), stack, options, kMiddle);
+    const Picture view = mosaic_picture(view_of(side), stack, options, kMiddle);
     Buffer st(sizeof(float) * 2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    view.picture().draw(std::vector<const Source*>(kCircles, nullptr), {0, 0, side, side},
-                        packed_view(st.bytes(), PixelType::float32, side, side, 2), pool.parallel_for());
+    view.draw(std::vector<const Source*>(kCircles, nullptr), {0, 0, side, side},
+              packed_view(st.bytes(), PixelType::float32, side, side, 2), pool.parallel_for());
     std::vector<float> errors;
     const float* at = st.as<float>();
     for (int j = 0; j < side; ++j)
@@ -92,18 +92,17 @@ void run_mosaics(const Settings& settings, Report& report) {
     std::vector<Timed> timed;
     for (const Case& c : cases)
         timed.push_back({[&] {
-                             const ConcentricView view(view_of(side), stack, c.options);
-                             view.picture().draw(
-                                 sources, {0, 0, side, side},
-                                 packed_view(picture.bytes(), PixelType::float32, side, side, 3),
-                                 pool.parallel_for());
+                             mosaic_picture(view_of(side), stack, c.options)
+                                 .draw(sources, {0, 0, side, side},
+                                       packed_view(picture.bytes(), PixelType::float32, side, side, 3),
+                                       pool.parallel_for());
                          },
                          settings.threads});
     const std::vector<Times> times = time_interleaved(timed, settings.rounds);
     for (std::size_t k = 0; k < cases.size(); ++k) {
         if (!settings.wants_scheme(cases[k].scheme)) continue;
         const Reached reached =
-            ConcentricView(view_of(side), stack, cases[k].options).picture().reached(pool.parallel_for());
+            mosaic_picture(view_of(side), stack, cases[k].options).reached(pool.parallel_for());
         Row row;
         row.op = "projection";
         row.case_name = "mosaic";

@@ -3,7 +3,7 @@
 //
 // Source and picture are square and of one size, three channels, bilinear. Cases: a 12 x 12 mesh that pulls
 // (in float and in 8 bits), the same with a level more in some cells, the first one pushing, pairs of
-// points, and the first one as an ST-map, pixel by pixel. Every scheme draws a fresh MeshWarp each time, planning included. `double` is the loop that one
+// points, and the first one as an ST-map, pixel by pixel. Every scheme draws a fresh picture each time, planning included. `double` is the loop that one
 // writes in an afternoon: the patch at every pixel in double, then four texels. Rivals: warp_rivals.h.
 //
 // Errors are distances of the source points used from the map in long double (of the inverse and of points:
@@ -130,7 +130,9 @@ struct Scene {
     }
     ImageView target() const { return packed_view(picture.bytes(), type, size, size, 3); }
     Box box() const { return {0, 0, size, size}; }
-    MeshWarp warp(const MeshWarpOptions& options) const { return {map, size, size, size, size, options}; }
+    Picture warp(const MeshWarpOptions& options) const {
+        return warped_picture(map, {size, size}, {size, size}, options);
+    }
     const ControlMesh* mesh() const { return std::get_if<ControlMesh>(&map.shape); }
     bool is_stmap() const { return mesh() && mesh()->samples; }
     bool pulls() const { return mesh() && mesh()->direction == Direction::pull && !is_stmap(); }
@@ -156,7 +158,7 @@ struct Scene {
         truth.resize(index_of(0, size, size));
         MeshWarpOptions options;
         options.tol = 0;
-        const MeshWarp exact = warp(options);
+        const Picture exact = warp(options);
         parallel_for(size, [&](std::int64_t row) {
             const int y = static_cast<int>(row);
             const std::unique_ptr<Mesh> own = pulls() ? std::make_unique<Mesh>(pull_mesh()) : nullptr;
@@ -167,7 +169,7 @@ struct Scene {
                     const Point<long double> q =
                         own->at(own->patch(own->cell_at(x + 0.5, y + 0.5)), x + 0.5L, y + 0.5L);
                     p = {static_cast<double>(q.x), static_cast<double>(q.y)};
-                } else if (!exact.blocks().exact(x + 0.5, y + 0.5, 0, p, piece)) {
+                } else if (!exact.maps[0].blocks->exact(x + 0.5, y + 0.5, 0, p, piece)) {
                     p = {std::nan(""), std::nan("")};
                 }
             }
@@ -176,8 +178,8 @@ struct Scene {
 };
 
 /// The points that a warp's blocks lead to.
-Points points_of(const MeshWarp& warp, const ParallelFor& parallel_for) {
-    const BlockMap& map = warp.blocks();
+Points points_of(const Picture& warp, const ParallelFor& parallel_for) {
+    const BlockMap& map = *warp.maps[0].blocks;
     Points points(index_of(0, map.height(), map.width()), {std::nan(""), std::nan("")});
     parallel_for(map.regions(), [&](std::int64_t region) {
         for (const Block& b : map.blocks(region))
@@ -209,7 +211,7 @@ Accuracy accuracy(const Points& used, const Points& truth) {
 
 /// The plain loop: each pixel's point in double, then four texels and black beyond the edges.
 template <class Texel>
-void draw_double(const Scene& scene, const MeshWarp& warp, const ParallelFor& parallel_for) {
+void draw_double(const Scene& scene, const Picture& warp, const ParallelFor& parallel_for) {
     const auto* source = scene.texels.as<Texel>();
     auto* picture = scene.picture.as<Texel>();
     const int n = scene.size;
@@ -220,7 +222,7 @@ void draw_double(const Scene& scene, const MeshWarp& warp, const ParallelFor& pa
             int piece = 0;
             Texel* to = picture + 3 * index_of(x, y, n);
             double sum[3] = {};
-            if (warp.blocks().exact(x + 0.5, y + 0.5, 0, p, piece)) {
+            if (warp.maps[0].blocks->exact(x + 0.5, y + 0.5, 0, p, piece)) {
                 const double fx = std::floor(p.x - 0.5), fy = std::floor(p.y - 0.5);
                 for (int k = 0; k < 4; ++k) {
                     const double tx = fx + (k & 1), ty = fy + (k >> 1);
@@ -269,7 +271,7 @@ class Bench {
 
         MeshWarpOptions exact;
         exact.tol = 0;
-        const auto warp = std::make_shared<MeshWarp>(scene.warp(exact));
+        const auto warp = std::make_shared<Picture>(scene.warp(exact));
         add({"double", kNone,
              [this, &scene, warp] {
                  if (scene.type == PixelType::float32)

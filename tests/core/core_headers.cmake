@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What is installed of the core's headers is whole and no more than needed: anamorph.h gathers the public ones, they and
-# the details include nothing else of the core, and every detail is included.
+# What is installed of the core's headers is whole and no more than needed: anamorph.h gathers the public ones, one a topic, they
+# and the details include nothing else of the core, and every detail is included.
 # Needs: CORE_DIR; PUBLIC and DETAILS, lists of paths with | between them.
 cmake_minimum_required(VERSION 3.25)
 

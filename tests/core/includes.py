@@ -18,7 +18,7 @@ OWN = re.compile(r'# *include *"anamorph/([^"]+)"')
 
 
 def folder_of(path):
-    """What lies in none, below all others, is one too, but for the header that gathers all. Those of figures are many."""
+    """What lies in none, below all others, is one too. Those of figures are many."""
     return "/".join(path.parts[:-1][:2 if path.parts[0] == "figure" else 1]) or "."
 
 
@@ -54,7 +54,11 @@ def main():
         sys.exit("no library has what no other has")
 
     def library_of(path):
-        return owners.get(path.parts[0], owners[""])
+        return owners.get(path.parts[0].removesuffix(".h"), owners[""])
+
+    def is_topic(path):
+        """Is it a header that gathers those of a folder, or of all, for users?"""
+        return len(path.parts) == 1 and path.suffix == ".h" and (core / path.stem).is_dir() or path.name == "anamorph.h"
 
     files = sorted(p for p in core.rglob("*") if p.suffix in (".h", ".cpp"))
     faults = [] if files else [f"no sources under {core}"]
@@ -70,7 +74,9 @@ def main():
             if library_of(pathlib.PurePath(other)) not in links[library_of(name)]:
                 faults.append(f"{name}: includes {other} of a library that it does not link")
             here, there = folder_of(name), folder_of(pathlib.PurePath(other))
-            if here != there and str(name) != "anamorph.h":
+            if is_topic(pathlib.PurePath(other)) and not is_topic(name):
+                faults.append(f"{name}: includes {other}, which is for users")
+            if here != there and not is_topic(name):
                 arrows[here].setdefault(there, f"{name} includes {other}")
     for folder in sorted(arrows):
         way = way_back(arrows, folder)

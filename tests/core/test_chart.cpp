@@ -402,14 +402,14 @@ TEST(Chart, ErrorsNameTheParameterItsValueAndWhatIsAllowed) {
         {Projection::mercator, 10, 10, -kInfinity, kEdges, "srcfov", "-inf", "up to 360"},
         {Projection::cubemap, 10, 60, 80, kEdges, "srcfov", "80", "90 degrees"},
         {Projection::cubemap, 10, 60, kNan, kEdges, "srcfov", "nan", "90 degrees"},
-        {Projection::cubemap, 10, 59, 0, kEdges, "srcsize", "10x59", "6 down"},
-        {Projection::cubemap3x2, 30, 22, 0, kEdges, "srcsize", "30x22", "3 across"},
-        {Projection::cubecross, 10, 10, 0, kEdges, "srcsize", "10x10", "square"},
-        {Projection::rectilinear, 0, 10, 0, kEdges, "srcsize", "0x10", "1x1"},
-        {Projection::rectilinear, 10, -3, 0, kEdges, "srcsize", "10x-3", "1x1"},
-        {Projection::rectilinear, 1 << 25, 10, 0, kEdges, "srcsize", "33554432x10", "16777216"},
-        {Projection::equirectangular, 1, 10, 0, kCenters, "srcsize", "1x10", "at least 2"},
-        {Projection::cubemap, 1, 6, 0, kCenters, "srcsize", "1x6", "at least 2"},
+        {Projection::cubemap, 10, 59, 0, kEdges, "source size", "10x59", "6 down"},
+        {Projection::cubemap3x2, 30, 22, 0, kEdges, "source size", "30x22", "3 across"},
+        {Projection::cubecross, 10, 10, 0, kEdges, "source size", "10x10", "square"},
+        {Projection::rectilinear, 0, 10, 0, kEdges, "source size", "0x10", "1x1"},
+        {Projection::rectilinear, 10, -3, 0, kEdges, "source size", "10x-3", "1x1"},
+        {Projection::rectilinear, 1 << 25, 10, 0, kEdges, "source size", "33554432x10", "16777216"},
+        {Projection::equirectangular, 1, 10, 0, kCenters, "source size", "1x10", "at least 2"},
+        {Projection::cubemap, 1, 6, 0, kCenters, "source size", "1x6", "at least 2"},
     };
     for (const Refused& c : cases) try {
             Chart(c.projection, c.width, c.height, c.fov, c.spacing, "src");

@@ -144,13 +144,13 @@ TEST(Concentric, AWallAtTheStatedDepthIsExact) {
         wall.draw();
         for (const View& view : {View{96, 30, 0}, View{96, 171, 12}, View{96, -100, -20}}) {
             ConcentricStack stack{circles, 2.5, {double(from.x), double(from.z)}};
-            const ConcentricView seen(view.of(wall), stack, bilinear());
-            const Off worst = off(draw(seen.picture(), wall, view.side), wall, view, from);
+            const Picture seen = mosaic_picture(view.of(wall), stack, bilinear());
+            const Off worst = off(draw(seen, wall, view.side), wall, view, from);
             // tol, and what the middle of a chord between two texels is off its arc.
             EXPECT_LT(worst.across, 0.012) << circles << " circles, yaw " << view.yaw;
             EXPECT_NEAR(worst.least_height, 1, 2e-4);
             EXPECT_NEAR(worst.most_height, 1, 2e-4);
-            EXPECT_LE(seen.picture().reached(serial_for).max_error, 0.01);
+            EXPECT_LE(seen.reached(serial_for).max_error, 0.01);
         }
     }
 }
@@ -165,8 +165,8 @@ TEST(Concentric, OtherWallsAreExactAcrossAndOffInHeightAsStated) {
         double largest = 0;
         for (const double yaw : {along, along + 180}) {
             const View view{96, yaw, 5};
-            const ConcentricView seen(view.of(wall), stack, bilinear());
-            const Off worst = off(draw(seen.picture(), wall, view.side), wall, view, from);
+            const Picture seen = mosaic_picture(view.of(wall), stack, bilinear());
+            const Off worst = off(draw(seen, wall, view.side), wall, view, from);
             // tol, and what the middle between two circles, an eighth apart, is off the arc over it.
             EXPECT_LT(worst.across, 0.012 + 0.02) << yaw;
             largest = std::max({largest, worst.most_height - 1, 1 - worst.least_height});
@@ -214,8 +214,8 @@ TEST(Concentric, SourcePointsHoldTheToleranceInEveryScheme) {
                 options.tol = tol;
                 options.output = Output::stmap;
                 const ConcentricStack stack{wall.circles, 1.5, {double(from.x), double(from.z)}};
-                const ConcentricView seen(view.of(wall), stack, options, circle);
-                const std::vector<float> st = draw(seen.picture(), wall, view.side, 2);
+                const Picture seen = mosaic_picture(view.of(wall), stack, options, circle);
+                const std::vector<float> st = draw(seen, wall, view.side, 2);
                 double worst = 0;
                 int found = 0;
                 for (int j = 0; j < view.side; ++j)
@@ -231,7 +231,7 @@ TEST(Concentric, SourcePointsHoldTheToleranceInEveryScheme) {
                     }
                 EXPECT_GT(found, view.side * view.side / 3);
                 EXPECT_LE(worst, tol + 4e-5) << "as far as float holds them, circle " << circle;
-                EXPECT_LE(seen.picture().reached(serial_for).max_error, std::max(tol, 1e-9));
+                EXPECT_LE(seen.reached(serial_for).max_error, std::max(tol, 1e-9));
             }
 }
 
@@ -242,14 +242,14 @@ TEST(Concentric, StraightUpThereIsNothing) {
     options.output = Output::bound;
     for (const double tol : {0.0, 0.01}) {
         options.tol = tol;
-        const ConcentricView seen(Panorama(slit, view), {2, 4, {0.4, 0.3}}, options);
+        const Picture seen = mosaic_picture(Panorama(slit, view), {2, 4, {0.4, 0.3}}, options);
         std::vector<float> bounds(12, -1);
-        ASSERT_TRUE(seen.picture().draw(
+        ASSERT_TRUE(seen.draw(
             {nullptr, nullptr}, {0, 0, 4, 3},
             packed_view(std::as_writable_bytes(std::span(bounds)).data(), PixelType::float32, 4, 3, 1),
             serial_for));
         for (const float bound : bounds) EXPECT_LT(bound, 1e-9f);
-        EXPECT_LT(seen.picture().reached(serial_for).max_error, 1e-9);
+        EXPECT_LT(seen.reached(serial_for).max_error, 1e-9);
     }
 }
 
@@ -261,15 +261,14 @@ TEST(Concentric, StraightUpIsThePole) {
             options.tol = tol;
             const auto drawn = [&](Output output, std::optional<int> circle) {
                 options.output = output;
-                const ConcentricView seen(Panorama(turn, view, {0, pitch, 0}), {2, 4, {0.4, 0.3}}, options,
-                                          circle);
-                EXPECT_LT(seen.picture().reached(serial_for).max_error, 1e-9);
+                const Picture seen =
+                    mosaic_picture(Panorama(turn, view, {0, pitch, 0}), {2, 4, {0.4, 0.3}}, options, circle);
+                EXPECT_LT(seen.reached(serial_for).max_error, 1e-9);
                 std::vector<float> values(18, -1);
-                EXPECT_TRUE(seen.picture().draw(
-                    {nullptr, nullptr}, {0, 0, 3, 3},
-                    packed_view(std::as_writable_bytes(std::span(values)).data(), PixelType::float32, 3, 3,
-                                output == Output::stmap ? 2 : 1),
-                    serial_for));
+                EXPECT_TRUE(seen.draw({nullptr, nullptr}, {0, 0, 3, 3},
+                                      packed_view(std::as_writable_bytes(std::span(values)).data(),
+                                                  PixelType::float32, 3, 3, output == Output::stmap ? 2 : 1),
+                                      serial_for));
                 return values;
             };
             EXPECT_EQ(drawn(Output::stmap, 0)[9], pitch > 0 ? 0 : 1);
@@ -299,9 +298,9 @@ TEST(Concentric, WhatHasNoWeightDoesNotShow) {
     for (const double tol : {0.01, 0.0}) {
         ReprojectOptions options = bilinear();
         options.tol = tol;
-        const ConcentricView mixed(view.of(wall), {3, 2, {0, 0}}, options),
-            alone(view.of(wall), {3, 2, {0, 0}}, options, 1);
-        EXPECT_EQ(draw(mixed.picture(), wall, 48), draw(alone.picture(), wall, 48));
+        const Picture mixed = mosaic_picture(view.of(wall), {3, 2, {0, 0}}, options),
+                      alone = mosaic_picture(view.of(wall), {3, 2, {0, 0}}, options, 1);
+        EXPECT_EQ(draw(mixed, wall, 48), draw(alone, wall, 48));
     }
 }
 
@@ -312,14 +311,14 @@ TEST(Concentric, PartsAreTheSameAsTheWhole) {
     for (const double tol : {0.01, 0.0}) {
         ReprojectOptions options;
         options.tol = tol;
-        const ConcentricView seen(view.of(wall), {5, HUGE_VAL, {0.5, -0.6}}, options);
-        const std::vector<float> whole = draw(seen.picture(), wall, 64), part = [&] {
+        const Picture seen = mosaic_picture(view.of(wall), {5, HUGE_VAL, {0.5, -0.6}}, options);
+        const std::vector<float> whole = draw(seen, wall, 64), part = [&] {
             const MemorySource stack = wall.source();
             std::deque<StripSource> strips;
             std::vector<const Source*> sources;
             for (int i = 0; i < 5; ++i) sources.push_back(&strips.emplace_back(stack, 8 * 5 * i, 40));
             std::vector<float> pixels(30 * 20 * 3);
-            EXPECT_TRUE(seen.picture().draw(
+            EXPECT_TRUE(seen.draw(
                 sources, {21, 33, 51, 53},
                 packed_view(std::as_writable_bytes(std::span(pixels)).data(), PixelType::float32, 30, 20, 3),
                 serial_for));

@@ -2,6 +2,7 @@
 // What pictures of the map itself say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +18,7 @@ std::vector<float> stmap_of(const Panorama& map, double tol) {
     const int w = map.target().width(), h = map.target().height();
     std::vector<float> uv(static_cast<std::size_t>(w * h * 2));
     const ImageView view = packed_view(reinterpret_cast<std::byte*>(uv.data()), PixelType::float32, w, h, 2);
-    EXPECT_TRUE(Reprojection(map, options).draw(nullptr, {0, 0, w, h}, view));
+    EXPECT_TRUE(reprojected_picture(map, options).draw(nullptr, {0, 0, w, h}, view));
     return uv;
 }
 
@@ -80,13 +81,34 @@ TEST(Draw, WhatStandsBeyondTheEdgesIsDrawn) {
         std::vector<float> drawn(1000 * 700, -1.0f);
         const ImageView view =
             packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32, 1000, 700, 1);
-        ASSERT_TRUE(Reprojection(Panorama(from, to, {}), options).draw(&source, {0, 0, 1000, 700}, view));
+        ASSERT_TRUE(
+            reprojected_picture(Panorama(from, to, {}), options).draw(&source, {0, 0, 1000, 700}, view));
         const float beyond = wrap == Wrap::automatic || wrap == Wrap::black ? 0.0f : 1.0f;
         SCOPED_TRACE(static_cast<int>(wrap));
         EXPECT_NEAR(drawn.front(), beyond, 1e-6);
         EXPECT_NEAR(drawn.back(), beyond, 1e-6);
         EXPECT_NEAR(drawn[350 * 1000 + 500], 1, 1e-6);
     }
+}
+
+TEST(Draw, NothingIsWrittenBeyondTheView) {
+    const Panorama map(Chart(Projection::equirectangular, 64, 32),
+                       Chart(Projection::rectilinear, 40, 30, 90));
+    std::vector<float> texels(64 * 32, 1), pixels(20 * 30, -1);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 32, 1));
+    const auto small =
+        packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 20, 15, 1);
+    const Picture picture = reprojected_picture(map, {});
+    EXPECT_TRUE(picture.draw(&source, {0, 0, 20, 15}, small));
+    for (const Box& box : {Box{0, 0, 40, 30}, Box{0, 0, 21, 15}, Box{0, 0, 20, 16}, Box{-5, 0, 20, 15}}) {
+        std::fill(pixels.begin(), pixels.end(), -1.0f);
+        EXPECT_THROW(picture.draw(&source, box, small), Error);
+        EXPECT_EQ(std::count(pixels.begin(), pixels.end(), -1.0f), 600);
+    }
+    // Beyond the picture pixels become 0.
+    EXPECT_TRUE(picture.draw(&source, {-20, -15, 0, 0}, small));
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), 0.0f), 300);
 }
 
 }  // namespace

@@ -206,6 +206,8 @@ TEST(Features, BadLinesAreNamed) {
     EXPECT_NE(message([&] { features.add_line({{{0, 0}, {1, 0}}, {{0, 0}, {1, 0}}}, NAN); }), "no error");
     EXPECT_NE(message([&] { features.add_polyline({{{0, 0}, {1, 0}}, {{0, 0}}}); }), "no error");
     EXPECT_NE(message([&] { features.add_curve({{{0, 0}, {1, 0}}, {{0, 0}, {1, 0}}}); }), "no error");
+    EXPECT_EQ(message([&] { features.set_frame(2, {10, 10}); }), "shape=2: must be 0 to 1");
+    EXPECT_EQ(message([&] { features.set_frame(-1, {10, 10}); }), "shape=-1: must be 0 to 1");
     // Turned round from A to B: no length half way.
     Features turned;
     turned.add_line({{{0, 0}, {10, 0}}, {{10, 0}, {0, 0}}});

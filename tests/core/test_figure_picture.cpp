@@ -299,6 +299,19 @@ TEST(FigurePicture, AnyBoxAndThreadsAreTheSame) {
     }
 }
 
+TEST(FigurePicture, NothingIsWrittenBeyondTheView) {
+    EXPECT_THROW(FigurePicture(FigureFrame(), View(), {0, 40}, {}), Error);
+    const FigurePicture picture(FigureFrame(), View(), {40, 40}, {});
+    std::vector<float> pixels(20 * 10 * 4, -1);
+    const auto small =
+        packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 10, 10, 4);
+    EXPECT_THROW(picture.draw({0, 0, 10, 11}, small), Error);
+    EXPECT_THROW(picture.draw({0, 0, 11, 10}, small), Error);
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), -1.0f), 800);
+    picture.draw({35, 35, 45, 45}, small);
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), -1.0f), 400);
+}
+
 TEST(FigurePicture, BadBodiesAreNamed) {
     Scene scene;
     scene.bodies = {{}, {{0, 0, NAN}, {1, 1, 1}, glm::dmat3(1.0)}};

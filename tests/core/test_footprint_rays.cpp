@@ -91,7 +91,7 @@ class Ones {
         std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1.0f);
         ReprojectOptions options;
         options.tol = tol;
-        EXPECT_TRUE(Reprojection(map, options)
+        EXPECT_TRUE(reprojected_picture(map, options)
                         .draw(&m_pyramid, {0, 0, width, height},
                               packed_view(reinterpret_cast<std::byte*>(values.data()), PixelType::float32,
                                           width, height, 1)));

@@ -61,7 +61,7 @@ std::shared_ptr<const Features> face(double scale_b = 1) {
 constexpr int kWidth = 190, kHeight = 150;
 constexpr Size kSize{kWidth, kHeight};
 
-FloatPicture draw(const Morph& morph, const std::vector<const Source*>& sources, int channels,
+FloatPicture draw(const anamorph::Picture& morph, const std::vector<const Source*>& sources, int channels,
                   const Box& box = {0, 0, kWidth, kHeight}, const ParallelFor& parallel_for = serial_for) {
     FloatPicture p(box.width(), box.height(), channels, PixelType::float32);
     EXPECT_TRUE(morph.draw(sources, box, p.view(), parallel_for));
@@ -92,9 +92,9 @@ TEST(Morph, AtItsEndsItIsThePicturesToTheBit) {
                 options.tol = 0;
                 options.filter = filter;
                 options.scheme = scheme;
-                const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
+                const auto morph = morphed_picture(face(), {kSize, kSize}, kSize, options);
                 EXPECT_EQ(draw(morph, {&sa, &sb}, 3).pixels, kept.pixels);
-                EXPECT_EQ(morph.reads(), (std::vector<bool>{end == 0, end == 1}));
+                EXPECT_TRUE(morph.reads(0) == (end == 0) && morph.reads(1) == (end == 1));
             }
     }
 }
@@ -106,11 +106,11 @@ TEST(Morph, AShapeAndTheOthersColour) {
     options.t = 0.4;
     options.t_color = 1;
     options.filter = Filter::bilinear;
-    const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
-    EXPECT_EQ(morph.reads(), (std::vector<bool>{false, true}));
+    const auto morph = morphed_picture(face(), {kSize, kSize}, kSize, options);
+    EXPECT_TRUE(!morph.reads(0) && morph.reads(1));
     options.t_color.reset();
     options.picture = 1;
-    const Morph warp(face(), {kSize, kSize}, kWidth, kHeight, options);
+    const auto warp = morphed_picture(face(), {kSize, kSize}, kSize, options);
     EXPECT_EQ(draw(morph, {nullptr, &sb}, 3).pixels, draw(warp, {&sa, &sb}, 3).pixels);
 }
 
@@ -124,7 +124,7 @@ TEST(Morph, BlendsTheTwoWarps) {
     options.filter = Filter::bilinear;
     const auto drawn = [&](std::optional<int> picture) {
         options.picture = picture;
-        return draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, options), {&sa, &sb}, 3);
+        return draw(morphed_picture(face(), {kSize, kSize}, kSize, options), {&sa, &sb}, 3);
     };
     const FloatPicture morph = drawn({}), wa = drawn(0), wb = drawn(1);
     for (std::size_t i = 0; i < morph.pixels.size(); ++i)
@@ -146,13 +146,13 @@ TEST(Morph, BitsDependOnNeitherCropNorThreads) {
             }
             options.tol = 0.02;
             const int channels = options.picture ? 2 : 3;
-            const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
+            const auto morph = morphed_picture(face(), {kSize, kSize}, kSize, options);
             const FloatPicture whole = draw(morph, {&sa, &sb}, channels);
-            const Morph again(face(), {kSize, kSize}, kWidth, kHeight, options);
+            const auto again = morphed_picture(face(), {kSize, kSize}, kSize, options);
             EXPECT_EQ(whole.pixels,
                       draw(again, {&sa, &sb}, channels, {0, 0, kWidth, kHeight}, threads).pixels);
             for (const Box& box : {Box{17, 23, 18, 24}, Box{100, 60, 163, 131}, Box{-5, -7, 60, 40}}) {
-                const Morph fresh(face(), {kSize, kSize}, kWidth, kHeight, options);
+                const auto fresh = morphed_picture(face(), {kSize, kSize}, kSize, options);
                 FloatPicture part = draw(fresh, {&sa, &sb}, channels, box);
                 for (int y = std::max(0, box.y0); y < box.y1; ++y)
                     for (int x = std::max(0, box.x0); x < box.x1; ++x)
@@ -169,7 +169,7 @@ TEST(Morph, BeyondThePictureThereIsNothing) {
     constexpr int kSmall = 70;
     const FloatPicture a = noise(kSmall, kSmall, 1, 8), b = noise(kSmall, kSmall, 1, 9);
     const MemorySource sa(a.source()), sb(b.source());
-    const Morph morph(face(), {{kSmall, kSmall}, {kSmall, kSmall}}, kSmall, kSmall, {});
+    const auto morph = morphed_picture(face(), {{kSmall, kSmall}, {kSmall, kSmall}}, {kSmall, kSmall}, {});
     for (int i = 0; i < 4; ++i) {
         std::vector<std::vector<float>> used;
         for (std::size_t size = 1000; size < 20000; size += 1000)
@@ -201,7 +201,7 @@ TEST(Morph, PicturesOfAnotherSizeShowTheSame) {
     features->set_frame(1, {kWidth, kHeight});
     MorphOptions options;
     options.filter = Filter::bilinear;
-    const Morph morph(features, {kSize, {2 * kWidth, 2 * kHeight}}, kWidth, kHeight, options);
+    const auto morph = morphed_picture(features, {kSize, {2 * kWidth, 2 * kHeight}}, kSize, options);
     const FloatPicture m = draw(morph, {&sa, &sb}, 1);
     for (std::size_t i = 0; i < m.pixels.size(); ++i) ASSERT_NEAR(m.pixels[i], a.pixels[i], 2e-5f);
 }
@@ -212,7 +212,7 @@ TEST(Morph, KeepsTheTypeOfWhatItIsAskedFor) {
     std::fill(b.pixels.begin(), b.pixels.end(), 100);
     const MemorySource sa(a.source()), sb(b.source());
     BytePicture to(kWidth, kHeight, 3, PixelType::uint8);
-    const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, {});
+    const auto morph = morphed_picture(face(), {kSize, kSize}, kSize, {});
     ASSERT_TRUE(morph.draw({&sa, &sb}, {0, 0, kWidth, kHeight}, to.view()));
     for (const std::uint8_t v : to.pixels) ASSERT_EQ(v, 150);
 }
@@ -225,7 +225,7 @@ TEST(Morph, UnassociatedAlphaWeighsColour) {
         b.pixels[i + 1] = 1;
     }
     const MemorySource sa(a.source(), 3), sb(b.source(), 3);
-    const FloatPicture m = draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, {}), {&sa, &sb}, 4);
+    const FloatPicture m = draw(morphed_picture(face(), {kSize, kSize}, kSize, {}), {&sa, &sb}, 4);
     for (std::size_t i = 0; i < m.pixels.size(); i += 4) {
         ASSERT_NEAR(m.pixels[i], 1, 1e-6);
         ASSERT_NEAR(m.pixels[i + 1], 0, 1e-6);
@@ -245,19 +245,39 @@ TEST(Morph, ThreePicturesMixByTheirWeights) {
     for (const FloatPicture& p : pictures) sources.emplace_back(p.source());
     MorphOptions options;
     options.shape_weights = {0.2, 0.3, 0.5};
-    const Morph morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options);
+    const auto morph = morphed_picture(features, {kSize, kSize, kSize}, kSize, options);
     const FloatPicture m = draw(morph, {&sources[0], &sources[1], &sources[2]}, 1);
     for (const float v : m.pixels) ASSERT_NEAR(v, 1.3f, 1e-5f);
     options.shape_weights = {0.2, 0.3, 0.4};
-    EXPECT_THROW(Morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options), Error);
+    EXPECT_THROW(morphed_picture(features, {kSize, kSize, kSize}, kSize, options), Error);
     options.shape_weights.clear();
-    EXPECT_THROW(Morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options), Error);
+    EXPECT_THROW(morphed_picture(features, {kSize, kSize, kSize}, kSize, options), Error);
+}
+
+TEST(Morph, AsManySourcesAreGivenAsThereAreShapes) {
+    const FloatPicture a = noise(kWidth, kHeight, 3, 1);
+    const MemorySource sa(a.source());
+    FloatPicture to(kWidth, kHeight, 3, PixelType::float32);
+    MorphOptions options;
+    options.t = 0;  // B is not read, but counts
+    const auto morph = morphed_picture(face(), {kSize, kSize}, kSize, options);
+    const auto message = [&](const std::vector<const Source*>& sources) -> std::string {
+        try {
+            morph.draw(sources, {0, 0, kWidth, kHeight}, to.view());
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_EQ(message({&sa, nullptr}), "no error");
+    EXPECT_EQ(message({&sa}), "pictures=1: must be 2");
+    EXPECT_EQ(message({&sa, nullptr, nullptr}), "pictures=3: must be 2");
 }
 
 TEST(Morph, BadParametersAreNamed) {
     const auto message = [](MorphOptions options, Size b = kSize) -> std::string {
         try {
-            const Morph morph(face(), {kSize, b}, kWidth, kHeight, options);
+            const auto morph = morphed_picture(face(), {kSize, b}, kSize, options);
         } catch (const Error& error) {
             return error.what();
         }

@@ -115,6 +115,26 @@ TEST(Operations, HaveNamesAndSources) {
     EXPECT_EQ(find_operation("none"), nullptr);
 }
 
+TEST(Operations, TooFewAndTooManySourcesAreRefused) {
+    for (const Operation* operation : operations()) {
+        const ExampleFiles files(*operation);
+        const ParameterValues values(*operation->parameters);
+        const auto message = [&](std::size_t count) -> std::string {
+            try {
+                operation->read({values, std::vector<SourceImage>(count), {}, files});
+            } catch (const Error& error) {
+                return error.what();
+            }
+            return "no error";
+        };
+        const std::size_t least = operation->least_sources, most = operation->sources.size();
+        EXPECT_THAT(message(most + 1),
+                    HasSubstr("sources=" + std::to_string(most + 1) + ": " + operation->name));
+        if (least > 0)
+            EXPECT_THAT(message(least - 1), HasSubstr("sources=" + std::to_string(least - 1) + ": "));
+    }
+}
+
 TEST(Operations, ExamplesAreDrawnTheSameWholeAndInParts) {
     for (const Operation* operation : operations()) {
         SCOPED_TRACE(operation->name);

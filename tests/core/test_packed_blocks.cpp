@@ -244,9 +244,9 @@ TEST(PackedBlocks, PixelsWithGapsHaveTheSameBits) {
             packed_view(static_cast<const std::byte*>(texels.data()), type, 256, 128, 3));
         ReprojectOptions options;
         options.filter = Filter::bilinear;
-        const Reprojection view(Panorama(Chart(Projection::equirectangular, 256, 128),
-                                         Chart(Projection::rectilinear, kSize, kSize, 90)),
-                                options);
+        const auto view = reprojected_picture(Panorama(Chart(Projection::equirectangular, 256, 128),
+                                                       Chart(Projection::rectilinear, kSize, kSize, 90)),
+                                              options);
         const int pixel = 3 * size_of(type);
         std::vector<std::byte> packed(static_cast<std::size_t>(kSize * kSize * pixel)),
             apart(static_cast<std::size_t>(kSize * kSize * (pixel + kGap)));

@@ -375,7 +375,7 @@ TEST(ReprojectRequest, ErrorsOfLensesAndSizes) {
                 HasSubstr("fov=0: must be a number above 0, at most 360"));
     EXPECT_THAT(error_of([] { request({{"to", "cubemap"}, {"fov", "80"}}); }), HasSubstr("fov=80"));
     EXPECT_THAT(error_of([] { request({{"to", "cubemap"}, {"size", "8x8"}}); }), HasSubstr("size=8x8"));
-    EXPECT_THAT(error_of([] { request({{"from", "cubemap"}}); }), HasSubstr("srcsize=2048x1024"));
+    EXPECT_THAT(error_of([] { request({{"from", "cubemap"}}); }), HasSubstr("source size=2048x1024"));
     EXPECT_THAT(error_of([] {
                     request({{"from", "rectilinear"}, {"srcfov", "190"}});
                 }),
@@ -421,7 +421,7 @@ std::vector<float> drawn(const std::vector<Assignment>& assignments, const Sourc
     std::vector<float> pixels(static_cast<std::size_t>(all.width()) * static_cast<std::size_t>(all.height()));
     const ImageView view = packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
                                        all.width(), all.height(), 1);
-    EXPECT_TRUE(Reprojection(r.map(), r.options).draw(&source, all, view));
+    EXPECT_TRUE(reprojected_picture(r.map(), r.options).draw(&source, all, view));
     return pixels;
 }
 

@@ -159,7 +159,8 @@ void make_morph(const std::vector<Assignment>& assignments) {
     auto features = std::make_shared<Features>();
     features->add_line({{{40, 40}, {80, 38}}, {{4, 5}, {8, 7}}});
     features->pin_border(r.pin_border.value_or(0));
-    const Morph made(features, r.pictures, r.width, r.height, r.frame_options(r.frames - 1));
+    const Picture made =
+        morphed_picture(features, r.pictures, {r.width, r.height}, r.frame_options(r.frames - 1));
 }
 
 TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {

@@ -209,7 +209,7 @@ TEST(Reading, ThroughAffineMeshes) {
         options.filter = c.filter;
         options.wrap = c.wrap;
         if (c.wrap == Wrap::automatic) c.wrap = Wrap::black;
-        const MeshWarp warp({"mesh", mesh}, t.width, t.height, c.width, c.height, options);
+        const auto warp = warped_picture({"mesh", mesh}, {t.width, t.height}, {c.width, c.height}, options);
         compared += expect_read(c, t, draw(warp, c, t));
     }
     EXPECT_GT(compared, 100'000);
@@ -238,7 +238,7 @@ TEST(Reading, AroundAPanorama) {
         options.tol = c.tol;
         options.filter = c.filter;
         options.wrap = c.wrap;
-        const Reprojection job(Panorama(from, to, {yaw, 0, 0}), options);
+        const auto job = reprojected_picture(Panorama(from, to, {yaw, 0, 0}), options);
         compared += expect_read(c, t, draw(job, c, t));
     }
     EXPECT_GT(compared, 100'000);
@@ -266,9 +266,10 @@ TEST(Reading, ThroughALensThatRolls) {
         options.tol = c.tol;
         options.filter = c.filter;
         options.wrap = c.wrap;
-        const Reprojection job(Panorama({Projection::rectilinear, t.width, t.height, from_fov},
-                                        {Projection::rectilinear, c.width, c.height, to_fov}, {0, 0, roll}),
-                               options);
+        const auto job =
+            reprojected_picture(Panorama({Projection::rectilinear, t.width, t.height, from_fov},
+                                         {Projection::rectilinear, c.width, c.height, to_fov}, {0, 0, roll}),
+                                options);
         compared += expect_read(c, t, draw(job, c, t));
     }
     EXPECT_GT(compared, 100'000);

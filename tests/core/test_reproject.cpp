@@ -75,11 +75,10 @@ void threaded_for(int threads, std::int64_t count, const std::function<void(std:
     for (std::thread& t : pool) t.join();
 }
 
-Picture draw(const Reprojection& job, const Source& source, const ParallelFor& parallel_for = serial_for,
+Picture draw(const anamorph::Picture& job, const Source& source, const ParallelFor& parallel_for = serial_for,
              PixelType type = PixelType::float32) {
-    const Chart& target = job.map().target();
-    Picture p(type, target.width(), target.height(), job.channels(source));
-    EXPECT_TRUE(job.draw(&source, {0, 0, target.width(), target.height()}, p.view, parallel_for));
+    Picture p(type, job.width(), job.height(), job.channels(&source));
+    EXPECT_TRUE(job.draw(&source, {0, 0, job.width(), job.height()}, p.view, parallel_for));
     return p;
 }
 
@@ -163,7 +162,8 @@ TEST(Reproject, RowsThatEndWithTheSphereGoOnBeyondTheSeam) {
                         const Pyramid pyramid(image);
                         ReprojectOptions options;
                         options.filter = filter;
-                        const Picture got = draw(Reprojection(Panorama(chart, view, look), options), pyramid);
+                        const Picture got =
+                            draw(reprojected_picture(Panorama(chart, view, look), options), pyramid);
                         double worst = 0;
                         for (int y = 0; y < view.height(); ++y)
                             for (int x = 0; x < view.width(); ++x) {
@@ -181,10 +181,10 @@ TEST(Reproject, SameBitsForCropsTilesThreadsAndOrder) {
         const Picture pixels = noise(c.type, c.source.width(), c.source.height(), c.channels, 7);
         const MemorySource memory(pixels.read());
         const Pyramid source(memory);
-        const Reprojection job({c.source, c.target, c.look}, c.options);
+        const auto job = reprojected_picture({c.source, c.target, c.look}, c.options);
         const Picture whole = draw(job, source, serial_for, c.type);
         for (const int threads : {2, 3, 4}) {
-            const Reprojection again({c.source, c.target, c.look}, c.options);
+            const auto again = reprojected_picture({c.source, c.target, c.look}, c.options);
             const Picture other = draw(
                 again, source, [&](auto n, const auto& body) { threaded_for(threads, n, body); }, c.type);
             EXPECT_EQ(whole.bytes, other.bytes) << threads << " threads";
@@ -220,7 +220,7 @@ TEST(Reproject, PaintsTheSkyForEveryPairOfProjections) {
             ReprojectOptions options;
             options.filter = Filter::bicubic;
             const Panorama map(from, to, {20, -35, 15});
-            const Picture picture = draw(Reprojection(map, options), source);
+            const Picture picture = draw(reprojected_picture(map, options), source);
             double worst = 0;
             int seen = 0;
             for (std::size_t k = 0; k < to.pieces().size(); ++k)
@@ -267,7 +267,7 @@ TEST(Reproject, ASteadySkyHasNoSeams) {
             ReprojectOptions options;
             options.filter = filter;
             const Chart to(equirectangular, 300, 150);
-            const Picture picture = draw(Reprojection({from, to, {33, 44, 55}}, options), source);
+            const Picture picture = draw(reprojected_picture({from, to, {33, 44, 55}}, options), source);
             for (int y = 0; y < 150; ++y)
                 for (int x = 0; x < 300; ++x)
                     ASSERT_NEAR(picture.at(x, y, 0), 0.75f, 1e-5f)
@@ -309,7 +309,8 @@ TEST(Reproject, EveryInstructionSetAgreesWithTheScalarSampler) {
                 c.options.filter = filter;
                 const Picture pixels = noise(c.type, c.source.width(), c.source.height(), c.channels, 9);
                 const MemorySource source(pixels.read());
-                const Picture picture = draw(Reprojection({c.source, c.target, c.look}, c.options), source);
+                const Picture picture =
+                    draw(reprojected_picture({c.source, c.target, c.look}, c.options), source);
                 EXPECT_LE(against_scalar(c, source, picture), filter == Filter::bicubic ? 32 : 16);
             }
         // Blocks against exact: noise changes by at most 2 per pixel of distance, along each axis.
@@ -319,7 +320,8 @@ TEST(Reproject, EveryInstructionSetAgreesWithTheScalarSampler) {
             c.options.tol = 1e-3;
             const Picture pixels = noise(c.type, c.source.width(), c.source.height(), c.channels, 9);
             const MemorySource source(pixels.read());
-            const Picture picture = draw(Reprojection({c.source, c.target, c.look}, c.options), source);
+            const Picture picture =
+                draw(reprojected_picture({c.source, c.target, c.look}, c.options), source);
             EXPECT_LE(against_scalar(c, source, picture), 4e-3 / 0x1p-24);
         }
     }
@@ -338,7 +340,7 @@ TEST(Reproject, NotANumberStaysInItsFootprint) {
             ReprojectOptions options;
             options.filter = filter;
             const Panorama map(from, to);
-            const Picture picture = draw(Reprojection(map, options), source);
+            const Picture picture = draw(reprojected_picture(map, options), source);
             const double reach = filter == Filter::nearest ? 0.5 : filter == Filter::bilinear ? 1 : 2;
             int hit = 0;
             for (int y = 0; y < 200; ++y)
@@ -370,8 +372,8 @@ TEST(Reproject, AlphaWeighsColour) {
     const MemorySource source(pixels.read(), 3);
     ReprojectOptions options;
     options.filter = Filter::bilinear;
-    const Picture picture =
-        draw(Reprojection({{equirectangular, 64, 32}, {rectilinear, 100, 100, 90}, {}}, options), source);
+    const Picture picture = draw(
+        reprojected_picture({{equirectangular, 64, 32}, {rectilinear, 100, 100, 90}, {}}, options), source);
     int mixed = 0;
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x) {
@@ -395,7 +397,7 @@ TEST(Reproject, ErrorPictureStaysUnderBoundPicture) {
         const auto picture_of = [&](Output output, int channels) {
             options.output = output;
             Picture p(PixelType::float32, 300, 200, channels);
-            EXPECT_TRUE(Reprojection(map, options).draw(nullptr, {0, 0, 300, 200}, p.view));
+            EXPECT_TRUE(reprojected_picture(map, options).draw(nullptr, {0, 0, 300, 200}, p.view));
             return p;
         };
         const Picture error = picture_of(Output::error, 1), bound = picture_of(Output::bound, 1);
@@ -414,7 +416,7 @@ TEST(Reproject, ErrorPictureStaysUnderBoundPicture) {
                 EXPECT_NEAR(du * 4096, 0, 0.251);
                 EXPECT_NEAR(double(stmap.at(x, y, 1)) * 2048, p.y, 0.251);
             }
-        EXPECT_EQ(most, static_cast<float>(Reprojection(map, options).reached().max_error));
+        EXPECT_EQ(most, static_cast<float>(reprojected_picture(map, options).reached().max_error));
         EXPECT_GT(most, 0);
         if (scheme == Scheme::exact) {
             EXPECT_LT(most, 1e-6f);
@@ -432,7 +434,7 @@ TEST(Reproject, AtASeamEitherEndIsRight) {
                 options.output = output;
                 options.scheme = Scheme::exact;
                 Picture picture(PixelType::float32, 64, 48, 1);
-                Reprojection(map, options).draw(nullptr, {0, 0, 64, 48}, picture.view, serial_for);
+                reprojected_picture(map, options).draw(nullptr, {0, 0, 64, 48}, picture.view, serial_for);
                 return picture;
             };
             const Picture error = drawn(Output::error), bound = drawn(Output::bound);
@@ -455,7 +457,7 @@ TEST(Reproject, BoundsGoOnWhereSourcePointsDo) {
             const auto picture_of = [&](Output output, int channels) {
                 options.output = output;
                 Picture p(PixelType::float32, 300, 240, channels);
-                EXPECT_TRUE(Reprojection(map, options).draw(nullptr, {0, 0, 300, 240}, p.view));
+                EXPECT_TRUE(reprojected_picture(map, options).draw(nullptr, {0, 0, 300, 240}, p.view));
                 return p;
             };
             const Picture stmap = picture_of(Output::stmap, 2), bound = picture_of(Output::bound, 1);
@@ -488,7 +490,7 @@ TEST(Reproject, WhatNeitherOfTwoLensesSeesIsBlack) {
             ReprojectOptions options;
             options.filter = filter;
             options.tol = tol;
-            const Picture picture = draw(Reprojection(map, options), source);
+            const Picture picture = draw(reprojected_picture(map, options), source);
             for (int y = 0; y < 180; ++y)
                 for (int x = 0; x < 360; ++x) {
                     const double azimuth = (x + 0.5 - 180) / 180 * std::numbers::pi,
@@ -523,7 +525,7 @@ TEST(Reproject, AnOctahedronIsOnePicture) {
                 // Three quarters of the way to the diamond's edge, across all lines where quarters meet.
                 const Panorama map({Projection::octahedral, 64, 64, 0, spacing},
                                    {Projection::rectilinear, 33, 33, 90}, {});
-                const Picture picture = draw(Reprojection(map, options), source);
+                const Picture picture = draw(reprojected_picture(map, options), source);
                 for (int y = 0; y < 33; ++y)
                     for (int x = 0; x < 33; ++x) ASSERT_FLOAT_EQ(picture.at(x, y, 0), 1) << x << ' ' << y;
             }
@@ -541,7 +543,7 @@ class BrokenSource final : public Source {
 TEST(Reproject, SaysWhatIsWrong) {
     using enum Projection;
     const Panorama map({equirectangular, 64, 32}, {rectilinear, 50, 50, 90});
-    const Reprojection job(map, {});
+    const auto job = reprojected_picture(map, {});
     Picture picture(PixelType::float32, 50, 50, 1);
     EXPECT_FALSE(job.draw(std::make_unique<BrokenSource>().get(), {0, 0, 50, 50}, picture.view));
     const Picture other = noise(PixelType::float32, 65, 32, 1, 1),

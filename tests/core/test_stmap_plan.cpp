@@ -126,7 +126,7 @@ TEST(StMapPlan, OtherSizesAndDirectionsAreMeshes) {
     std::get<ControlMesh>(map.shape).direction = Direction::push;
     EXPECT_FALSE(StMapPlan::serves(mesh_of(map), kTarget));
     // And are drawn.
-    EXPECT_GE(MeshWarp(map, kTarget.width, kTarget.height, 50, 40, {}).reached().max_error, 0);
+    EXPECT_GE(warped_picture(map, kTarget, {50, 40}, {}).reached().max_error, 0);
 }
 
 TEST(StMapPlan, RefusesWhatIsNoNumberOrTooFar) {
@@ -140,7 +140,7 @@ TEST(StMapPlan, RefusesWhatIsNoNumberOrTooFar) {
     }
     uv[2 * (3 * kTarget.width + 7) + 1] = 1e8f;
     const WarpMap far = map_of(uv);
-    EXPECT_THROW(MeshWarp(far, kSource.width, kSource.height, kTarget.width, kTarget.height, {}), Error);
+    EXPECT_THROW(warped_picture(far, kSource, kTarget, {}), Error);
     uv.pop_back();
     EXPECT_THROW(map_of(uv), Error);
 }
@@ -160,20 +160,20 @@ TEST(StMapPlan, TakesMapsOfLargePlates) {
     const Size plate{6144, 3240}, wide{16384, 40};
     for (const Size& size : {plate, wide}) {
         const WarpMap map = mesh_from_stmap(identity(size), size.width, size.height, "st.exr");
-        const MeshWarp warp(map, size.width, size.height, size.width, size.height, {});
-        EXPECT_EQ(warp.blocks().width(), size.width);
+        const Picture warp = warped_picture(map, size, size, {});
+        EXPECT_EQ(warp.maps[0].blocks->width(), size.width);
         Point<double> p{};
         int piece = 0;
-        ASSERT_TRUE(warp.blocks().exact(size.width - 0.5, size.height - 0.5, 0, p, piece));
+        ASSERT_TRUE(warp.maps[0].blocks->exact(size.width - 0.5, size.height - 0.5, 0, p, piece));
         EXPECT_NEAR(p.x, size.width - 0.5, 1e-3);
         EXPECT_NEAR(p.y, size.height - 0.5, 1e-3);
     }
     // Of another size than its picture it is a mesh of all its pixels, as it is where it pushes.
     const WarpMap map = mesh_from_stmap(identity(wide), wide.width, wide.height, "st.exr");
-    const MeshWarp half(map, wide.width, wide.height, wide.width / 2, wide.height / 2, {});
+    const Picture half = warped_picture(map, wide, {wide.width / 2, wide.height / 2}, {});
     Point<double> p{};
     int piece = 0;
-    ASSERT_TRUE(half.blocks().exact(100.5, 7.25, 0, p, piece));
+    ASSERT_TRUE(half.maps[0].blocks->exact(100.5, 7.25, 0, p, piece));
     EXPECT_NEAR(p.x, 201, 1e-2);
     EXPECT_NEAR(p.y, 14.5, 1e-2);
 }

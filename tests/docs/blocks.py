@@ -85,7 +85,7 @@ OTHERS = [
     Other("json", '"columns"', "core: Docs.ItsFilesCanBeRead"),
     Other("json", '"features"', "core: Docs.ItsFilesCanBeRead"),
     Other("json", '"panoramas"', "core: Docs.ItsFilesCanBeRead"),
-    Other("c++", "#include <anamorph/image/source.h>", "consumer: readme_example"),
+    Other("c++", "#include <anamorph/panorama.h>", "example_panorama"),
     Other("c++", "#include <anamorph/oiio_ops.h>", "consumer: readme_oiio_example"),
     Other("nudes", "* What is behind a star", "command", "one.nudes"),
     Other("nudes", "quadratic 25 49 moveby ball", "command: test_every_script_of_the_tutorial_runs"),

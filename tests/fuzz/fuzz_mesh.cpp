@@ -19,10 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         MeshWarpOptions options;
         options.tol = 1.0 / 16;
         options.amount = data[0] / 64.0;
-        const MeshWarp warp(map, 64, 48, 40, 32, options);
+        const Picture warp = warped_picture(map, {64, 48}, {40, 32}, options);
         Point<double> point{};
         int piece = 0;
-        if (warp.blocks().exact(20.5, 16.5, 0, point, piece))
+        if (warp.maps.front().blocks->exact(20.5, 16.5, 0, point, piece))
             fuzz::require(std::isfinite(point.x) && std::isfinite(point.y), "a source point is a number");
         const Reached reached = warp.reached();
         fuzz::require(reached.max_error <= options.tol, "the tolerance holds");

@@ -135,7 +135,7 @@ void vtkAnamorphPanoramaView::Draw(vtkInformationVector** inputs, const int* ext
     output->GetPointData()->SetScalars(array);
 
     anamorph_vtk::Execution execution(this);
-    const anamorph::Reprojection view(request.map(), request.options);
+    const anamorph::Picture view = anamorph::reprojected_picture(request.map(), request.options);
     const anamorph::MemorySource base(panorama.view(), anamorph_vtk::alpha_of(channels));
     const anamorph::FaceGrid faces = anamorph::faces_of(request.source.chart.projection());
     const anamorph::Pyramid source(base, std::max(1, faces.columns), std::max(1, faces.rows));

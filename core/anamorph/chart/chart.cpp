@@ -51,6 +51,11 @@ std::vector<Piece> face_pieces(Projection projection, int width, int height, con
     return pieces;
 }
 
+/// What messages call a chart's size: a source's is no key.
+std::string size_name(const std::string& prefix) {
+    return prefix.empty() ? "size" : "source size";
+}
+
 }  // namespace
 
 Projection projection_from_name(std::string_view name, const std::string& parameter) {
@@ -104,14 +109,14 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
-        throw Error(prefix + "size", size, "must be 1x1 to 16777216x16777216 pixels");
+        throw Error(size_name(prefix), size, "must be 1x1 to 16777216x16777216 pixels");
     if (!(d >= 0 && d <= kMostDistance))
         throw Error(prefix + "d", brief(d), "must be from 0 to " + brief(kMostDistance));
     m_setting.distance = d;
     if (m_fov == 0) m_fov = default_fov(projection);
     check_fov(projection, m_fov, m_setting, prefix + "fov");
     if (faces_of(projection).columns > 0)
-        m_pieces = face_pieces(projection, width, height, prefix + "size");
+        m_pieces = face_pieces(projection, width, height, size_name(prefix));
     else
         m_pieces = {Piece{{0, 0, width, height}}};
     set_scale(prefix, lens);
@@ -126,7 +131,7 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     long double across = columns / plane, down = across;
     if (m_spacing == PixelSpacing::centers) {
         if (columns < 2 || rows < 2)
-            throw Error(prefix + "size", std::to_string(m_width) + "x" + std::to_string(m_height),
+            throw Error(size_name(prefix), std::to_string(m_width) + "x" + std::to_string(m_height),
                         "pixels=centers needs at least 2 pixels each way");
         // Of a face, or of all of those that are joined.
         const FaceGrid grid = faces_of(m_projection);

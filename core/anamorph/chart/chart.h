@@ -31,14 +31,14 @@
 
 namespace anamorph {
 
-/// The projections, each defined by a file of chart/projection/.
+/// The projections, each in a file of chart/projection/.
 enum class Projection {
 #define ANAMORPH_PROJECTION(name, Type) name,
 #include "anamorph/chart/projection/list.h"
 #undef ANAMORPH_PROJECTION
 };
 
-/// All projections, in the order of chart/projection/list.h.
+/// All projections, in the order of their list.
 inline constexpr Projection kProjections[] = {
 #define ANAMORPH_PROJECTION(name, Type) Projection::name,
 #include "anamorph/chart/projection/list.h"
@@ -57,7 +57,7 @@ std::string_view name_of(Projection projection);
 std::string projection_names();
 /// The names of all projections, followed by the aliases.
 std::vector<std::string> projection_name_list();
-/// The default horizontal field of view of a projection and its limits, in degrees.
+/// A projection's default field of view and its limits.
 FieldOfView fov_of(Projection projection);
 /// The numbers of faces across and down a picture; 0 where the picture is one piece of any shape.
 struct FaceGrid {
@@ -70,7 +70,7 @@ FaceGrid faces_of(Projection projection);
 inline bool has_faces(Projection projection) {
     return faces_of(projection).columns > 0;
 }
-/// Are the rows of a projection's picture circles around the vertical axis, closed in a picture of 360 degrees?
+/// Are the rows of a projection's picture circles around the vertical axis, and those of 360 degrees closed?
 bool rows_turn(Projection projection);
 /// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
@@ -94,12 +94,12 @@ struct Branch : Setting {
 /// A flat picture of directions: a projection, its field of view and its pixels.
 class Chart {
   public:
-    /// The largest accepted distance d of the Pannini projection.
+    /// The largest value of Pannini's d.
     static constexpr double kMostDistance = 1000;
 
     /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
     /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `prefix` is put
-    /// before "fov", "size", "d" and "lens" in errors. Throws Error on a value out of range.
+    /// before "fov", "d" and "lens" in errors, and makes "size" the "source size". Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
           const LensModel& lens = {});
@@ -116,7 +116,7 @@ class Chart {
     double fov() const { return m_fov; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
-    /// The lens of the picture; null where it has no distortion.
+    /// The lens; null where there is none, as in most pictures.
     const Lens* lens() const { return m_lens.get(); }
 
     /// Does azimuth close on itself in this image (a full turn)? Its period in pixels is then period().
@@ -128,7 +128,7 @@ class Chart {
     /// Pixels per unit of the chart plane at pieces()[0].
     double scale_x() const { return m_sx.value(); }
     double scale_y() const { return m_sy.value(); }
-    /// Pixels per unit of the chart plane along x, more precise than a double.
+    /// scale_x(), known better than double holds it.
     const Constant& pixels_per_unit() const { return m_sx; }
     const Constant& units_per_pixel() const { return m_per_x; }
     /// Pixels per radian straight ahead of a piece.
@@ -165,18 +165,17 @@ class Chart {
     /// directions ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
-    /// A number that is > 0 where the projection shows a local ray and the ray lies on the piece, whether or not the ray
-    /// is beyond the end of the distorting lens (Lens::sees()).
+    /// What sees() says of a chart whose lens did not end.
     template <class T>
     T sees_without_lens(const Ray<T>& local, int piece = 0) const;
 
     /// Are there several pieces, and does each see all rays that are nearest to it?
     bool pieces_see_all() const { return m_pieces_see_all; }
 
-    /// A number for an image point that keeps its sign wherever one smooth formula holds.
+    /// A function of image points that has one sign where one smooth formula holds.
     template <class T>
     T crease(const T& x, const T& y, int piece) const;
-    /// A number for a local ray that keeps its sign wherever one smooth formula holds.
+    /// crease() as a function of local rays.
     template <class T>
     T crease(const Ray<T>& local) const;
     /// Do formulas count azimuths, or angles about the axis of sight?
@@ -204,7 +203,7 @@ class Chart {
         return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
     }
 
-    /// Pixels per unit of the chart plane (x, y), and units per pixel (per_x, per_y), in double.
+    /// Pixels for a unit of the plane, and units for a pixel, in double.
     struct Scale {
         double x, y, per_x, per_y;
     };

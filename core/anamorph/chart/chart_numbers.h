@@ -7,8 +7,7 @@
 
 namespace anamorph {
 
-/// Declares the functions from points to rays and back for the number T; `external` is extern, or nothing where they are
-/// compiled.
+/// The functions from points to rays and back, read with T; `external` is extern, or nothing where they are compiled.
 #define ANAMORPH_CHART_POINTS(external, T)                                              \
     external template Ray<T> Chart::local_ray(const T&, const T&, const Branch&) const; \
     external template Point<T> Chart::local_point(const Ray<T>&, const Branch&) const;  \
@@ -18,11 +17,11 @@ namespace anamorph {
 #define ANAMORPH_CHART_SIGHT(external, T)                             \
     external template T Chart::inside(const T&, const T&, int) const; \
     external template T Chart::sees(const Ray<T>&, int) const;
-/// Declares the functions that say where formulas have a crease, for the number T.
+/// The functions that say where these have a crease.
 #define ANAMORPH_CHART_CREASE(external, T)                            \
     external template T Chart::crease(const T&, const T&, int) const; \
     external template T Chart::crease(const Ray<T>&) const;
-/// Declares the functions of charts and lenses for all numbers that most source files need.
+/// All these functions with all numbers that they are read with.
 #define ANAMORPH_CHART_NUMBERS(external)                  \
     ANAMORPH_CHART_POINTS(external, double)               \
     ANAMORPH_CHART_POINTS(external, long double)          \

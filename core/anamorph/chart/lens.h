@@ -43,7 +43,7 @@ struct LensModel {
     /// The models described at the head of this file.
     enum class Kind { none, ptlens, brown, three_de4, kb4 };
     Kind kind = Kind::none;
-    /// The values of the parameters, in the order of names().
+    /// The values of the model, in the order of names().
     std::vector<double> values;
 
     /// Parses "none", or MODEL:name=value,name=value as in "ptlens:a=0.01,b=-0.03"; a parameter that is not named is
@@ -63,7 +63,7 @@ class LensTable;
 struct LensTerms {
     /// Does the formula map ideal points to observed ones, not the other way round?
     bool to_observed = true;
-    /// The model's own unit in units of the plane, its inverse, and the lens's centre in units of the plane.
+    /// The model's own unit in units of the plane, its reciprocal, and the centre.
     Constant unit, per_unit, shift_x, shift_y;
     /// Is the model's unit another than the plane's?
     bool has_unit = false;
@@ -107,21 +107,21 @@ inline bool somewhere(bool condition) {
 
 /// The coefficients of a Taylor series in the increment of the squared distance from the centre.
 using LensCoefficients = lens_formula::Series<Interval, 5>;
-/// Encloses the Taylor coefficients of S (lens_formula.h) about every member of `squared`.
+/// Encloses the coefficients of S about any member of `squared`.
 LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared);
-/// Encloses the Taylor coefficients of shrink() about every member of `squared`.
+/// Encloses the coefficients of shrink() about any member of `squared`.
 LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared);
 
 /// The coefficients of a Taylor series in the increment of a value, and the error of computing them in double.
 struct ComputedSeries {
-    /// The degree of the series that is computed in double.
+    /// The degree up to which double computes them.
     static constexpr int kDegree = 4;
     /// Intervals that enclose the coefficients up to kDegree, and the next one.
     LensCoefficients exact;
     /// Bounds of the errors of the computed coefficients.
     double error[kDegree + 1] = {};
 
-    /// The series of which nothing is known: all intervals and errors are infinite.
+    /// The series of which nothing is known.
     static ComputedSeries unbounded() {
         ComputedSeries series;
         std::fill(std::begin(series.exact.c), std::end(series.exact.c), Interval::all());
@@ -129,7 +129,7 @@ struct ComputedSeries {
         return series;
     }
 };
-/// The Taylor coefficients of shrink() about any member of an interval.
+/// The series of shrink() about any value of an interval, as double computes it.
 ComputedSeries computed_shrink(const LensTerms& lens, const Interval& value);
 
 /// The first approximation, in double, of the root of radial_at(t) = value, by the lens's table.
@@ -138,20 +138,20 @@ double near_root(const LensTerms& lens, double value);
 /// stretch_of() for jets of intervals, by its Taylor coefficients.
 template <int N>
 Jet<Interval, N> stretch_of(const LensTerms& lens, const Point<Jet<Interval, N>>& u);
-/// shrink_of() for jets of intervals, by its Taylor coefficients.
+/// shrink() for jets of intervals, by its coefficients.
 template <int N>
 Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
 /// shrink() for intervals. lens_formula.h has it for the numbers for which an iteration is enough.
 Interval shrink(const LensTerms& lens, const Interval& value);
-/// shrink() with a bound of its rounding.
+/// shrink() with its rounding.
 template <class Real>
 Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
-/// shrink() for jets.
+/// shrink() of jets.
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 
-/// shrink() near a known value, by its Taylor polynomial there: the coefficients are bases, in falling order.
+/// shrink() near a known value by its Taylor polynomial there: the coefficients are bases, in falling order.
 template <class Real>
 NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value);
 
@@ -162,7 +162,7 @@ Point<NearBound<Real>> settled(const LensTerms&, const Point<NearBound<Real>>& v
     const auto unbounded = RestBound<Real>::unbounded();
     return {{v.x.base, unbounded}, {v.y.base, unbounded}};
 }
-/// settled() for intervals: encloses the undistorted points of all members of v.
+/// The root that settled() finds, of all points of a box.
 Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
 template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);
@@ -178,8 +178,8 @@ class Lens {
     struct Plane {
         long double half_width, half_height, per_x, per_y;
     };
-    /// Throws Error naming `parameter` where a projection of kind `lensed` cannot have such a lens, and where the lens ends
-    /// within the largest circle that the picture holds. `projection`: the name of the projection, for messages.
+    /// A lens on a chart's plane. Throws Error naming `parameter` where a projection of that kind has no such lens, and where the
+    /// lens ends within the largest circle that the picture holds. `projection`: its name.
     Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
          const std::string& parameter);
 
@@ -244,7 +244,7 @@ std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Roun
 /// The least slope of radial_at() over an interval.
 double least_slope(const LensTerms& lens, const Interval& t);
 
-/// The root t of radial_at(t) = value for all members of `value`, with a bound of its rounding.
+/// The root with its rounding, of all members.
 template <class Real>
 Rounded<Real> radial_root(const LensTerms& lens, const Rounded<Real>& value) {
     const Interval range = radial_root(lens, value.range);
@@ -273,7 +273,7 @@ double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
     return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
 }
 
-/// settled() of numbers that are not jets.
+/// The root of numbers without jets.
 template <class Real>
 Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<Real>>& v) {
     using R = Rounded<Real>;
@@ -313,7 +313,7 @@ double most_undistorted(const LensTerms& lens, const Point<R>& v) {
     const double x = v.x.computed_size(), y = v.y.computed_size();
     return (s + 2 * by * std::max(x, y) * (x + y)) * (1 + 0x1p-40);
 }
-/// A Lipschitz constant of tangential_at() over all u, in the norm that is the larger of x and y.
+/// The same bound for tangential_at().
 template <class R>
 double most_tangential(const LensTerms& lens, const Point<R>& u) {
     const double x = u.x.computed_size(), y = u.y.computed_size();

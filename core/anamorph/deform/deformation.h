@@ -40,7 +40,7 @@ struct Deformation {
     bool operator==(const Deformation&) const = default;
 };
 
-/// Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow.
+/// Checks a bump. Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow.
 void check_deformation(const Deformation& deformation);
 
 /// exp(-a) for a >= 0. Numbers that have a faster way overload it.
@@ -69,7 +69,7 @@ T influence(const Deformation& d, const T& u, const T& v) {
 struct DisplacementJet {
     glm::dvec3 value{0.0}, by_u{0.0}, by_v{0.0};
 };
-/// The displacement at p and its derivatives, in double, with no cutoff; deformations that are not enabled add nothing.
+/// Finds the displacement and its derivatives at p in double, with no cutoff; deformations that are not enabled add nothing.
 DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p);
 /// Adds the displacement at p of one deformation, enabled or not, and its derivatives to `sum`.
 void add_displacement(const Deformation& deformation, glm::dvec2 p, DisplacementJet& sum);

@@ -35,12 +35,12 @@ std::vector<Deformation> parse_deformations_file(std::string_view text, std::str
 
 /// A list as a JSON file, which reads back as the same list, to the bit.
 std::string deformations_json(const std::vector<Deformation>& list);
-/// A list as a CSV file, which reads back as the same list, to the bit.
+/// The text of a CSV file that reads back as the same list, to the bit.
 std::string deformations_csv(const std::vector<Deformation>& list);
 
 /// The name of a kernel in files: "gaussian" or "wendland_c2".
 const char* name_of(DeformationKernel kernel);
-/// Finds the kernel of that name. Throws Error where there is none.
+/// The kernel of that name. Throws Error on other names.
 DeformationKernel kernel_named(std::string_view name);
 
 }  // namespace anamorph

@@ -41,7 +41,7 @@ struct DeformOptions {
 /// The totals of a list of deformations: the magnitudes of its displacements, and the bound of their error.
 class DisplacementSum {
   public:
-    /// Throws Error on options out of range.
+    /// An empty sum. Throws Error on options out of range.
     explicit DisplacementSum(const DeformOptions& options);
 
     const DeformOptions& options() const { return m_options; }
@@ -159,7 +159,7 @@ class DeformedGrid {
     /// which are not copied; null: none, as at first. The caller then has to write all points.
     void set_offsets(const double* offsets) { m_offsets = offsets; }
 
-    /// DisplacementSum::error_bound(); offsets are not counted.
+    /// No component of a displacement is farther from eq. (4.1) than this, offsets aside.
     double error_bound() const { return m_sum.error_bound(); }
 
     /// Gives `take` the derivatives of a list's displacement at the points that `changes` move, and at a few around
@@ -191,16 +191,16 @@ double deform_grid(const std::vector<Deformation>& list, std::span<const double>
 /// the cells within its cutoff only.
 class DeformedPoints {
   public:
-    /// Constructs the surface. Throws Error naming a point that is not finite, and on 2^31 points or more.
+    /// A surface of these points (u, v), not deformed yet. Throws Error that names the point on values that are not finite, and on
+    /// 2^31 points or more.
     DeformedPoints(std::span<const glm::dvec2> points, const DeformOptions& options = {});
 
-    /// Registers changes of the list, which update() or write() carries out. Throws Error if they leave the range.
+    /// Takes changes of the list; update() or write() carries them out. Throws Error if they are refused.
     void apply(std::span<const DeformationChange> changes);
     /// Registers one change of the list.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
-    /// Writes the points that the changes have moved, as DeformedGrid::update() does, and returns the number of points
-    /// that were written.
+    /// Writes what changes have moved, as DeformedGrid::update() does; returns the number of points that were written.
     template <class T>
     std::int64_t update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                         T* displacement = nullptr);
@@ -216,13 +216,13 @@ class DeformedPoints {
                            const TakeSlopes& take, const ParallelFor& parallel_for = serial_for,
                            T* displacement = nullptr);
 
-    /// Sets offsets that are added to the displacements, as DeformedGrid::set_offsets() does.
+    /// Adds to the displacements that are written from now on, as DeformedGrid::set_offsets() does.
     void set_offsets(const double* offsets) { m_offsets = offsets; }
 
-    /// DisplacementSum::error_bound(); offsets are not counted.
+    /// No component of a displacement is farther from eq. (4.1) than this, offsets aside.
     double error_bound() const { return m_sum.error_bound(); }
 
-    /// Gives `take` the derivatives of a list's displacement, as DeformedGrid::slopes() does.
+    /// Gives `take` the derivatives of the displacement, as DeformedGrid::slopes() does.
     void slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
                 const TakeSlopes& take, const ParallelFor& parallel_for = serial_for) const;
 

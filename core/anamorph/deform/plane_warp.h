@@ -27,7 +27,7 @@ class ParameterPlane {
   public:
     /// Constructs the plane z = 0 whose parameters are x and y.
     ParameterPlane() = default;
-    /// Throws Error on axes that are parallel or zero, and on numbers that are not finite.
+    /// The plane through `origin` with these axes. Throws Error on axes that are parallel or zero, and on numbers that are not finite.
     ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 axis_v);
 
     /// The parameters (u, v) of a point's projection onto the plane; not finite where p is not.
@@ -65,7 +65,7 @@ struct Fold {
 class PlaneWarp {
   public:
     PlaneWarp() = default;
-    /// Throws Error on a deformation that check_deformation refuses.
+    /// The map that a list makes over a plane. Throws Error on a deformation that check_deformation refuses.
     PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>& list);
 
     const ParameterPlane& plane() const { return m_plane; }

@@ -55,7 +55,7 @@ requires(std::is_invocable_v<Entry, int, int>) Ray<T> transform(const Entry& ent
     };
     return {row(0), row(1), row(2)};
 }
-/// The product matrix * ray, for a matrix whose entries are off by at most `error`.
+/// A ray turned by a matrix whose entries are off by at most `error`.
 template <class T>
 Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray, double error = 0) {
     return transform([&](int column, int row) { return measured<T>(matrix[column][row], error); }, ray);

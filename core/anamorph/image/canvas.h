@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
+#include "anamorph/error.h"
 #include "anamorph/image/block_sampler.h"
 #include "anamorph/image/view.h"
 
@@ -15,10 +17,18 @@ inline float one_of(PixelType type) {
     return type == PixelType::uint8 ? 255.0f : type == PixelType::uint16 ? 65535.0f : 1.0f;
 }
 
+/// Throws Error where a box that is drawn has more pixels either way than the view that it is drawn to.
+inline void check_room(const ImageView& view, const Box& box) {
+    if (box.width() <= view.width && box.height() <= view.height) return;
+    throw Error("view", std::to_string(view.width) + "x" + std::to_string(view.height),
+                "must be at least as large as the box that is drawn, " + std::to_string(box.width()) + "x" +
+                    std::to_string(box.height()));
+}
+
 class Canvas {
   public:
-    /// Pixel (0, 0) of `view` is (box.x0, box.y0) of the picture.
-    Canvas(const ImageView& view, const Box& box) : m_view(view), m_box(box) {}
+    /// Pixel (0, 0) of `view` is (box.x0, box.y0) of the picture. Throws what check_room() throws.
+    Canvas(const ImageView& view, const Box& box) : m_view(view), m_box(box) { check_room(view, box); }
 
     const Box& box() const { return m_box; }
     int channels() const { return m_view.channels; }

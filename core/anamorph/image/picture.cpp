@@ -35,6 +35,9 @@ void check_source(const std::string& name, const Source* source, const Chart& ch
 
 /// What draw() was given fits together. Returns one of the sources that are read, or null if none is.
 const Source* check(const Picture& picture, const Sources& sources, const ImageView& view) {
+    if (picture.source_count && sources.size() != static_cast<std::size_t>(*picture.source_count))
+        throw Error("pictures", std::to_string(sources.size()),
+                    "must be " + std::to_string(*picture.source_count));
     const Source* first = nullptr;
     for (const Picture::Map& map : picture.maps)
         for (const Picture::Layer& layer : map.layers) {
@@ -252,6 +255,14 @@ bool draw_same(const Picture& picture, const Source& source, const Box& box, con
 }
 
 }  // namespace
+
+bool Picture::reads(int source) const {
+    if (!shows_color()) return false;
+    for (const Map& map : maps)
+        for (const Layer& layer : map.layers)
+            if (layer.source == source) return true;
+    return false;
+}
 
 int Picture::channels(const Source* first) const {
     if (!shows_color()) return !value && output == Output::stmap ? 2 : 1;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/image/attribute.h"
 #include "anamorph/image/border.h"
 #include "anamorph/image/filter.h"
 #include "anamorph/image/source.h"
@@ -58,7 +59,7 @@ struct Picture {
         std::vector<Layer> layers;  ///< as many as the map has
     };
 
-    /// At least one; all cover the same pixels of the same target. ST-maps need a single layer.
+    /// The maps that it is drawn through, at least one; all cover the same pixels of the same target. ST-maps need a single layer.
     std::vector<Map> maps;
     Filter filter = Filter::antialias;
     Output output = Output::color;
@@ -69,25 +70,38 @@ struct Picture {
     std::function<void(const PixelRows& pixels)> overlay;
     /// A source that is the picture as it stands, pixel for pixel and whatever the filter.
     std::optional<int> same_as;
+    /// Where it is given: how many sources draw() has to be given, null or not.
+    std::optional<int> source_count = {};
+    /// Where it is given: what the picture says of itself beyond what was reached, over all of it.
+    std::function<Attributes(const ParallelFor& parallel_for)> says = {};
+    /// Does reached() compute every pixel, so that it takes as long as drawing all of them?
+    bool reached_by_drawing = false;
 
     int width() const { return maps.front().blocks->width(); }
     int height() const { return maps.front().blocks->height(); }
 
     /// Is what is drawn made of the sources' colours?
     bool shows_color() const { return !value && output == Output::color; }
+    /// Are colours of this source read?
+    bool reads(int source) const;
     /// Channels of the picture: those of the sources, of which `first` is one, for colour; 2 for stmap; else
     /// 1. Throws Error where colour lacks a source.
     int channels(const Source* first) const;
 
     /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the
     /// whole picture and all layers.
-    Reached reached(const ParallelFor& parallel_for) const;
+    Reached reached(const ParallelFor& parallel_for = serial_for) const;
 
     /// Draws the pixels of `box` (of the picture) to `view`, whose pixel (0, 0) is (box.x0, box.y0). Sources
     /// that no layer names may be null, and all but for colour. False when one could not be read: the picture
-    /// is then incomplete. Throws Error where sizes or channels do not fit.
+    /// is then incomplete. Throws Error where sizes, channels or the number of sources do not fit.
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for) const;
+              const ParallelFor& parallel_for = serial_for) const;
+    /// Draws a picture of one source, or, with null, of none.
+    bool draw(const Source* source, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for = serial_for) const {
+        return draw(std::vector<const Source*>{source}, box, view, parallel_for);
+    }
 };
 
 }  // namespace anamorph

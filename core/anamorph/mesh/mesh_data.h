@@ -43,7 +43,7 @@ struct ControlMesh {
     int columns = 1, rows = 1;
     /// The (columns + 1) (rows + 1) vertices of level 0, row by row from the top left.
     std::vector<Point<double>> vertices;
-    /// The pixels of an ST-map that are the vertices of level 0; `vertices` is then empty.
+    /// The vertices of an ST-map that is taken pixel for pixel; `vertices` is then empty.
     std::shared_ptr<const StSamples> samples;
     /// The number of vertices of level 0, given in `vertices` or in `samples`.
     std::size_t vertex_count() const { return samples ? samples->uv.size() / 2 : vertices.size(); }

@@ -42,9 +42,9 @@ WarpMap parse_points_csv(std::string_view text, std::string_view name);
 /// Reads a warp in the format that the ending of the name says: CSV for .csv, else JSON.
 WarpMap parse_warp_file(std::string_view text, std::string_view name);
 
-/// The largest number of pixels of an ST-map that may be vertices.
+/// So many pixels of an ST-map may be vertices.
 inline constexpr int kMostStMapVertices = 1 << 28;
-/// The largest width and height of an ST-map, in pixels.
+/// An ST-map may have so many pixels either way.
 inline constexpr int kMostStMapSide = 1 << 20;
 
 /// Makes a pull mesh from an ST-map: pixel (i, j) of an image of width x height says where in the source the centre
@@ -53,7 +53,7 @@ inline constexpr int kMostStMapSide = 1 << 20;
 /// floats apart. Every `step`-th pixel is taken, and the last of each row and column; 1 takes all.
 WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
                         std::ptrdiff_t row_stride, int step, std::string_view name);
-/// Makes a pull mesh from every pixel of an ST-map of two channels without gaps, whose pixels the mesh keeps.
+/// A pull mesh from every pixel of an ST-map of two channels, without gaps, which it keeps.
 WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name);
 
 }  // namespace anamorph

@@ -2,6 +2,7 @@
 #include "anamorph/mesh/mesh_warp.h"
 
 #include <atomic>
+#include <memory>
 
 #include "anamorph/image/strips.h"
 #include "anamorph/mesh/inverse.h"
@@ -27,72 +28,36 @@ std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source
                                       options.tol);
 }
 
-void check_size(const char* name, int width, int height) {
-    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-        throw Error(name, std::to_string(width) + "x" + std::to_string(height),
+void check_size(const char* name, const Size& size) {
+    if (size.width < 1 || size.height < 1 || size.width > kMaxSide || size.height > kMaxSide)
+        throw Error(name, std::to_string(size.width) + "x" + std::to_string(size.height),
                     "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
+}
+
+double folded_fraction(const WarpPlan& plan, const ParallelFor& parallel_for) {
+    const Box whole{0, 0, plan.width(), plan.height()};
+    std::atomic<std::int64_t> folded{0};
+    for_each_square(whole, parallel_for, [&](const Box& square) { folded += plan.folded_pixels(square); });
+    return static_cast<double>(folded) / (double(whole.width()) * whole.height());
 }
 
 }  // namespace
 
-struct MeshWarp::State {
-    State(const WarpMap& map, const Size& source, const Size& target, const MeshWarpOptions& warp)
-        : options(warp), plan(make_plan(map, source, target, warp)) {
-        const Chart flat(Projection::rectilinear, source.width, source.height);
-        picture.maps = {{plan, {{Border(flat, warp.wrap)}}}};
-        picture.filter = warp.filter;
-        picture.output = warp.output;
-        if (warp.folds) picture.value = [p = plan.get()](double x, double y) { return p->folds(x, y); };
-    }
-
-    MeshWarpOptions options;
-    std::shared_ptr<const WarpPlan> plan;
+Picture warped_picture(const WarpMap& map, const Size& source, const Size& target,
+                       const MeshWarpOptions& options) {
+    check_size("source size", source);
+    check_size("size", target);
+    const std::shared_ptr<const WarpPlan> plan = make_plan(map, source, target, options);
+    const Chart flat(Projection::rectilinear, source.width, source.height);
     Picture picture;
-};
-
-MeshWarp::MeshWarp(const WarpMap& map, int source_width, int source_height, int width, int height,
-                   const MeshWarpOptions& options) {
-    check_size("source size", source_width, source_height);
-    check_size("size", width, height);
-    m_state = std::make_unique<State>(map, Size{source_width, source_height}, Size{width, height}, options);
-}
-MeshWarp::~MeshWarp() = default;
-MeshWarp::MeshWarp(MeshWarp&&) noexcept = default;
-MeshWarp& MeshWarp::operator=(MeshWarp&&) noexcept = default;
-
-int MeshWarp::width() const {
-    return m_state->plan->width();
-}
-int MeshWarp::height() const {
-    return m_state->plan->height();
-}
-const MeshWarpOptions& MeshWarp::options() const {
-    return m_state->options;
-}
-const BlockMap& MeshWarp::blocks() const {
-    return *m_state->plan;
-}
-const Picture& MeshWarp::picture() const {
-    return m_state->picture;
-}
-int MeshWarp::channels(const Source& source) const {
-    return m_state->picture.channels(&source);
-}
-Reached MeshWarp::reached(const ParallelFor& parallel_for) const {
-    return m_state->picture.reached(parallel_for);
-}
-
-double MeshWarp::folded_fraction(const ParallelFor& parallel_for) const {
-    const Box whole{0, 0, width(), height()};
-    std::atomic<std::int64_t> folded{0};
-    for_each_square(whole, parallel_for,
-                    [&](const Box& square) { folded += m_state->plan->folded_pixels(square); });
-    return static_cast<double>(folded) / (double(whole.width()) * whole.height());
-}
-
-bool MeshWarp::draw(const Source* source, const Box& box, const ImageView& view,
-                    const ParallelFor& parallel_for) const {
-    return m_state->picture.draw({source}, box, view, parallel_for);
+    picture.maps = {{plan, {{Border(flat, options.wrap)}}}};
+    picture.filter = options.filter;
+    picture.output = options.output;
+    if (options.folds) picture.value = [plan](double x, double y) { return plan->folds(x, y); };
+    picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
+        return {{"anamorph:folded_fraction", folded_fraction(*plan, parallel_for)}};
+    };
+    return picture;
 }
 
 }  // namespace anamorph

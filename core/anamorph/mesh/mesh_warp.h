@@ -3,11 +3,9 @@
 // part of it at a time (Kim 2003, chapter 5).
 #pragma once
 
-#include <memory>
-
+#include "anamorph/geometry/size.h"
 #include "anamorph/image/picture.h"
 #include "anamorph/mesh/mesh_data.h"
-#include "anamorph/parallel_for.h"
 #include "anamorph/plan/scheme.h"
 
 namespace anamorph {
@@ -26,8 +24,9 @@ struct MeshWarpOptions {
     double amount = 1;  ///< blends vertices from the identity (0) to the warp (1) and beyond; finite
 };
 
-/// One warp, ready to draw any box of the picture in any order from any number of threads: the bits of a
-/// pixel depend on nothing but the map, the options, the sizes and the source.
+/// A picture warped. Its one source has the size `source` at level 0; the bits of a pixel depend on nothing but the map, the options,
+/// the sizes and the source. It says anamorph:folded_fraction, the fraction of its pixels where the map is folded (`folds` shows
+/// what is not 0).
 ///
 /// The identity maps the source image onto the whole target image. Where several source points land on a
 /// pixel (a mesh that pushes, folded), those come first where the mesh is not turned over, of these the one
@@ -35,41 +34,9 @@ struct MeshWarpOptions {
 /// lies so near a fold's edge that double does not tell two source points apart, the fold counts as one, and
 /// the bound spans them. Between the outermost lines of a mesh and the edges of the image it lies in, and
 /// beyond given points, the map goes on (mesh_data.h, scattered.h).
-class MeshWarp {
-  public:
-    /// Throws Error: a vertex that is not a number, a tolerance below 0, an amount that is not finite, sizes
-    /// that do not fit.
-    MeshWarp(const WarpMap& map, int source_width, int source_height, int width, int height,
-             const MeshWarpOptions& options);
-    ~MeshWarp();
-    MeshWarp(MeshWarp&&) noexcept;
-    MeshWarp& operator=(MeshWarp&&) noexcept;
-
-    int width() const;
-    int height() const;
-    const MeshWarpOptions& options() const;
-    /// The source point of every pixel, in blocks.
-    const BlockMap& blocks() const;
-    const Picture& picture() const;
-
-    /// Channels of the picture: the source's for colour, 2 for stmap, else 1.
-    int channels(const Source& source) const;
-
-    /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the
-    /// whole picture.
-    Reached reached(const ParallelFor& parallel_for = serial_for) const;
-    /// The fraction of the picture's pixels where the map is folded (`folds` shows what is not 0).
-    double folded_fraction(const ParallelFor& parallel_for = serial_for) const;
-
-    /// Draws the pixels of `box` (of the target image) to `view`, whose pixel (0, 0) is (box.x0, box.y0).
-    /// `source` has the size given above at level 0; it is not read for the other outputs and may then be
-    /// null. False when the source could not be read: the picture is then incomplete.
-    bool draw(const Source* source, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for = serial_for) const;
-
-  private:
-    struct State;
-    std::unique_ptr<State> m_state;
-};
+///
+/// Throws Error: a vertex that is not a number, a tolerance below 0, an amount that is not finite, sizes that do not fit.
+Picture warped_picture(const WarpMap& map, const Size& source, const Size& target,
+                       const MeshWarpOptions& options);
 
 }  // namespace anamorph

@@ -9,12 +9,12 @@
 // A pixel X in the frame of a line from p to q: along = (X - p) . e / |e| = u |e| and beside = v, with
 // e = q - p.
 
-/// The component of X - p = (dx, dy) along a line of unit direction (ux, uy).
+/// How far along a line of unit direction (ux, uy) the point X lies, with X - p = (dx, dy).
 template <class T, class U>
 inline T along_line(const T& dx, const T& dy, const U& ux, const U& uy) {
     return dx * ux + dy * uy;
 }
-/// The component of X - p = (dx, dy) at right angles to a line of unit direction (ux, uy).
+/// How far beside that line X lies.
 template <class T, class U>
 inline T beside_line(const T& dx, const T& dy, const U& ux, const U& uy) {
     return dy * ux - dx * uy;

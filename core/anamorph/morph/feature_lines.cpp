@@ -195,6 +195,8 @@ void Features::pin_border(double weight) {
 }
 
 void Features::set_frame(int shape, const Frame& frame) {
+    if (shape < 0 || shape >= m_shapes)
+        throw Error("shape", std::to_string(shape), "must be 0 to " + std::to_string(m_shapes - 1));
     if (!(frame.width > 0 && frame.height > 0 && frame.width <= kMostCoordinate &&
           frame.height <= kMostCoordinate))
         throw Error("size", shortest(frame.width) + "x" + shortest(frame.height),

@@ -35,7 +35,7 @@ class Features {
         double width = 0, height = 0;
     };
 
-    /// Constructs features of `shapes` key shapes, without lines. Throws Error where there are fewer than two shapes.
+    /// No lines yet. Throws Error when there are fewer than two shapes.
     explicit Features(int shapes = 2);
 
     int shapes() const { return m_shapes; }
@@ -71,7 +71,7 @@ class Features {
 
     /// The size of the picture for which a shape's lines are given; {0, 0}: any size that the picture has.
     Frame frame(int shape) const { return m_frames[static_cast<std::size_t>(shape)]; }
-    /// Sets frame(shape). Throws Error unless the size is above 0 and at most 1e9 pixels either way.
+    /// Sets frame(). Throws Error unless the size is above 0 and at most 1e9 pixels either way.
     void set_frame(int shape, const Frame& frame);
 
   private:
@@ -158,8 +158,8 @@ class FeatureMap {
 
     int shapes() const { return m_shapes; }
     Size target() const { return m_target; }
-    /// A copy of this map whose lines are sorted along Morton's curve, so that lines near each other lie near each other
-    /// in memory, too. Its sums are rounded in another order.
+    /// This map with its lines in another order: those that lie together come one after the other (along Morton's curve), so that
+    /// what is read of the lines about a place is one stretch of memory; sums round in another order.
     FeatureMap along_curve() const;
 
     /// The size of a shape's picture.

@@ -51,7 +51,7 @@ Features parse_features_svg(std::string_view text, std::string_view name);
 /// Reads features in the format that the ending of the name says: CSV for .csv, SVG for .svg, else JSON.
 Features parse_features_file(std::string_view text, std::string_view name);
 
-/// Throws Error naming the entry of the file if the features have more than kMaxFeatures lines.
+/// Checks how many lines there are. Throws Error naming the entry of the file that is one line too many.
 void check_feature_count(const Features& features, std::string_view file, const std::string& entry);
 
 }  // namespace anamorph

@@ -56,19 +56,16 @@ std::vector<double> color_weights(const MorphOptions& options, int shapes) {
                    "t_color");
 }
 
-std::vector<Size> sizes_of(const std::vector<Size>& pictures, int width, int height) {
-    const auto check = [](const std::string& name, int w, int h) {
-        if (!(w > 0 && h > 0 && w <= kMaxSide && h <= kMaxSide))
-            throw Error(name, std::to_string(w) + "x" + std::to_string(h),
-                        "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
-    };
-    check("size", width, height);
-    std::vector<Size> sizes;
-    for (const Size& s : pictures) {
-        check("picture " + std::to_string(sizes.size() + 1), s.width, s.height);
-        sizes.push_back({s.width, s.height});
-    }
-    return sizes;
+void check_size(const std::string& name, const Size& size) {
+    if (!(size.width > 0 && size.height > 0 && size.width <= kMaxSide && size.height <= kMaxSide))
+        throw Error(name, std::to_string(size.width) + "x" + std::to_string(size.height),
+                    "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
+}
+
+void check_sizes(const std::vector<Size>& pictures, const Size& target) {
+    check_size("size", target);
+    for (std::size_t k = 0; k < pictures.size(); ++k)
+        check_size("picture " + std::to_string(k + 1), pictures[k]);
 }
 
 Border border_of(const Size& size, Wrap wrap) {
@@ -77,71 +74,46 @@ Border border_of(const Size& size, Wrap wrap) {
                   wrap == Wrap::automatic ? Wrap::clamp : wrap);
 }
 
-}  // namespace
-
-struct Morph::State {
-    std::shared_ptr<const Features> features;
-    MorphOptions options;
-    FeatureMap map;
-    std::vector<double> shape;  ///< weights of the key shapes
-    std::vector<double> color;  ///< and of the pictures
-    Picture picture;
-
-    State(std::shared_ptr<const Features> given, const std::vector<Size>& pictures, int width, int height,
-          const MorphOptions& morph)
-        : features(std::move(given)),
-          options(morph),
-          map(*features, sizes_of(pictures, width, height), {width, height},
-              mixture(morph.shape_weights, morph.t, features->shapes(), "shape_weights", "t"),
-              {morph.weight_a, morph.weight_b, morph.weight_p}),
-          shape(mixture(morph.shape_weights, morph.t, features->shapes(), "shape_weights", "t")),
-          color(color_weights(morph, features->shapes())) {
-        std::vector<int> drawn;
-        for (int k = 0; k < map.shapes(); ++k)
-            if (reads(k)) drawn.push_back(k);
-        make_maps(drawn);
-        picture.filter = options.filter;
-        picture.output = options.output;
-        picture.same_as = untouched();
-        if (options.lines)
-            picture.overlay = [this](const PixelRows& pixels) { draw_features(*features, map, pixels); };
+/// The picture that comes through untouched, if one does.
+std::optional<int> untouched(const FeatureMap& map, const std::vector<double>& shape,
+                             const std::vector<double>& color) {
+    for (int k = 0; k < map.shapes(); ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        const Size size = map.picture(k), target = map.target();
+        if (only(shape, i) && only(color, i) && size.width == target.width && size.height == target.height)
+            return k;
     }
+    return {};
+}
 
-    bool reads(int k) const { return color[static_cast<std::size_t>(k)] != 0; }
-
-  private:
-    /// The picture that comes through untouched, if one does.
-    std::optional<int> untouched() const {
-        for (int k = 0; k < map.shapes(); ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            const Size size = map.picture(k), target = map.target();
-            if (only(shape, i) && only(color, i) && size.width == target.width &&
-                size.height == target.height)
-                return k;
-        }
-        return {};
-    }
-
-    void make_maps(const std::vector<int>& drawn) {
-        NearFarOptions near_far;
-        near_far.tol = options.scheme == MorphScheme::exact && options.tol >= 0 ? 0 : options.tol;
-        // Two at a time share one plan.
-        for (auto from = drawn.begin(); from != drawn.end();
-             from += static_cast<int>(near_far.shapes.size())) {
-            near_far.shapes.assign(from, from + std::min<std::ptrdiff_t>(2, drawn.end() - from));
-            add(std::make_shared<NearFar>(map, near_far));
-        }
-    }
-
-    /// A map, each of its layers with its shape's picture.
-    void add(const std::shared_ptr<const FeatureBlocks>& blocks) {
-        std::vector<Picture::Layer> layers;
-        for (const int k : blocks->shapes())
-            layers.push_back(
-                {border_of(map.picture(k), options.wrap), k, color[static_cast<std::size_t>(k)]});
-        picture.maps.push_back({blocks, std::move(layers)});
-    }
+/// A plan, and its map, which has to outlive it.
+struct Planned {
+    std::shared_ptr<const FeatureMap> map;
+    NearFar blocks;
 };
+
+/// Of pictures whose colours have a weight, two at a time share one plan; each of its layers has its shape's picture.
+std::vector<Picture::Map> maps_of(const std::shared_ptr<const FeatureMap>& map,
+                                  const std::vector<double>& color, const MorphOptions& options) {
+    std::vector<int> drawn;
+    for (int k = 0; k < map->shapes(); ++k)
+        if (color[static_cast<std::size_t>(k)] != 0) drawn.push_back(k);
+    NearFarOptions near_far;
+    near_far.tol = options.scheme == MorphScheme::exact && options.tol >= 0 ? 0 : options.tol;
+    std::vector<Picture::Map> maps;
+    for (auto from = drawn.begin(); from != drawn.end(); from += static_cast<int>(near_far.shapes.size())) {
+        near_far.shapes.assign(from, from + std::min<std::ptrdiff_t>(2, drawn.end() - from));
+        const std::shared_ptr<const Planned> planned(new Planned{map, NearFar(*map, near_far)});
+        std::vector<Picture::Layer> layers;
+        for (const int k : near_far.shapes)
+            layers.push_back(
+                {border_of(map->picture(k), options.wrap), k, color[static_cast<std::size_t>(k)]});
+        maps.push_back({{planned, &planned->blocks}, std::move(layers)});
+    }
+    return maps;
+}
+
+}  // namespace
 
 void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
                    int shapes) {
@@ -163,49 +135,27 @@ std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictur
     return {};
 }
 
-Morph::Morph(std::shared_ptr<const Features> features, const std::vector<Size>& pictures, int width,
-             int height, const MorphOptions& options) {
+Picture morphed_picture(const std::shared_ptr<const Features>& features, const std::vector<Size>& pictures,
+                        const Size& target, const MorphOptions& options) {
     if (!features) throw Error("a morph needs features");
-    m_state = std::make_unique<State>(std::move(features), pictures, width, height, options);
-}
-Morph::~Morph() = default;
-Morph::Morph(Morph&&) noexcept = default;
-Morph& Morph::operator=(Morph&&) noexcept = default;
-
-int Morph::width() const {
-    return m_state->map.target().width;
-}
-int Morph::height() const {
-    return m_state->map.target().height;
-}
-const MorphOptions& Morph::options() const {
-    return m_state->options;
-}
-const Picture& Morph::picture() const {
-    return m_state->picture;
-}
-
-std::vector<bool> Morph::reads() const {
-    std::vector<bool> all;
-    for (int k = 0; k < m_state->map.shapes(); ++k)
-        all.push_back(m_state->picture.shows_color() && m_state->reads(k));
-    return all;
-}
-
-int Morph::channels(const Source* first) const {
-    return m_state->picture.channels(first);
-}
-
-Reached Morph::reached(const ParallelFor& parallel_for) const {
-    return m_state->picture.reached(parallel_for);
-}
-
-bool Morph::draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
-                 const ParallelFor& parallel_for) const {
-    const auto shapes = static_cast<std::size_t>(m_state->map.shapes());
-    if (sources.size() != shapes)
-        throw Error("pictures", std::to_string(sources.size()), "must be " + std::to_string(shapes));
-    return m_state->picture.draw(sources, box, view, parallel_for);
+    check_sizes(pictures, target);
+    const std::vector<double> shape =
+        mixture(options.shape_weights, options.t, features->shapes(), "shape_weights", "t");
+    const auto map =
+        std::make_shared<const FeatureMap>(*features, pictures, target, shape,
+                                           LineWeights{options.weight_a, options.weight_b, options.weight_p});
+    const std::vector<double> color = color_weights(options, features->shapes());
+    Picture picture;
+    picture.maps = maps_of(map, color, options);
+    picture.filter = options.filter;
+    picture.output = options.output;
+    picture.same_as = untouched(*map, shape, color);
+    picture.source_count = map->shapes();
+    if (options.lines)
+        picture.overlay = [features, map](const PixelRows& pixels) {
+            draw_features(*features, *map, pixels);
+        };
+    return picture;
 }
 
 }  // namespace anamorph

@@ -42,7 +42,7 @@ struct Interval {
 inline bool operator==(const Interval& a, const Interval& b) {
     return a.lo == b.lo && a.hi == b.hi;
 }
-/// Is a < b for all members of both? Neither a < b nor b <= a need hold.
+/// True for all members of both: neither a < b nor b <= a need hold.
 inline bool operator<(const Interval& a, const Interval& b) {
     return a.hi < b.lo;
 }
@@ -233,7 +233,7 @@ inline Interval exp(const Interval& a) {
 inline Interval log(const Interval& a) {
     return interval_detail::libm(std::log(a.lo), std::log(a.hi));
 }
-/// The power a^b of bases that are not negative: the extreme powers stand at corners.
+/// Powers of bases that are not negative: the extreme ones stand at corners.
 inline Interval pow(const Interval& a, const Interval& b) {
     if (!(a.lo >= 0)) return Interval::all();
     const double p = std::pow(a.lo, b.lo), q = std::pow(a.lo, b.hi);
@@ -281,7 +281,7 @@ inline Certainty is_negative(const Interval& a) {
 inline bool is_zero(const Interval& a) {
     return a.lo == 0 && a.hi == 0;
 }
-/// The members of an interval that are not negative; [0, 0] where all are.
+/// The numbers as they are where they are not negative, else 0.
 inline Interval without_hair(const Interval& a) {
     return {a.lo < 0 ? 0 : a.lo, a.hi < 0 ? 0 : a.hi};
 }

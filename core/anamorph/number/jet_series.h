@@ -119,9 +119,8 @@ struct ProductSum {
     }
     const T& value() const { return sum; }
 };
-/// A sum of products of intervals (R: double, or a vector), in about as many steps as one of numbers. With middles p, q
-/// and largest magnitudes P, Q of two factors, their product is within PQ - |p||q| of pq; so is a sum of them, with
-/// weights w, of the sum of w p q.
+/// Sums of products of intervals (R: of double, or of a vector), in about as many steps as of numbers. With middles p, q and largest
+/// magnitudes P, Q of two factors, their product is within PQ - |p||q| of pq; so is a sum of them, with weights w, of the sum of w p q.
 /// Read here are s = 2 p and t = 2 q, sums of ends, which do not underflow.
 ///
 /// Rounding, in units u = 2^-53 of G = sum |w| P Q, for N <= 6, when a coefficient has at most 16 products: s t w
@@ -207,7 +206,7 @@ struct Factor {
   private:
     Factor(const Jet<T, N>& unknown, int any) : jet(unknown), degree(any) {}
 };
-/// A jet of intervals as a factor of products, with the terms of all of them.
+/// A factor of intervals, with the terms of all its products.
 template <Enclosure T, int N>
 struct Factor<T, N> {
     using Term = typename ProductSum<T>::Term;

@@ -51,7 +51,7 @@ struct RestBound {
             r.error = HUGE_VAL;
         return r;
     }
-    /// Of a function of libm whose slope is at most 1, with this value at a.middle, which mostly is 0 there.
+    /// The bound of a function of libm whose slope is at most 1, with this value at a.middle, which mostly is 0 there.
     static RestBound of_function(const RestBound& a, double (*function)(double), double unit) {
         const double middle = a.middle == 0 ? 0 : function(a.middle);
         return result(middle, a.radius + interval_detail::kLibmMargin * std::fabs(middle), a.error, unit);

@@ -200,7 +200,7 @@ void sin_cos(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& c) {
     s = a.is_zero() ? a : wave(sin(a.range));
     c = wave(cos(a.range));
 }
-/// Writes sinh(a) into s and returns 1, both over cosh of a's constant part, as for Jet.
+/// Returns 1, and puts sinh(a) into `s`, both over cosh of a's constant part, as Jet has them.
 template <class Real>
 Rounded<Real> scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s) {
     using R = Rounded<Real>;
@@ -305,7 +305,7 @@ template <class Real>
 double lower_end(const Rounded<Real>& a) {
     return a.range.lo - a.radius - a.error;
 }
-/// Are all exact and all computed values negative, or none?
+/// Are all exact and all computed values negative?
 template <class Real>
 Certainty is_negative(const Rounded<Real>& a) {
     const double off = a.radius + a.error;
@@ -326,7 +326,7 @@ inline double larger(double a, double b) {
 }
 }  // namespace rounded_detail
 
-/// Encloses a choice between two numbers, which are the same where rounding decides between them.
+/// One of two numbers, which are the same where rounding decides between them.
 template <class Real>
 Rounded<Real> hull(const Rounded<Real>& a, const Rounded<Real>& b) {
     return {hull(a.range, b.range), rounded_detail::larger(a.radius, b.radius),
@@ -366,7 +366,7 @@ class Constant {
           m_value(static_cast<double>(value)),
           m_precise_error(value == 0 ? 0 : error),
           m_error(value == 0 ? 0 : (error + 0x1p-53 * std::fabs(m_value)) * rounded_detail::kUp) {}
-    /// A constant from a few operations and one function of libm in long double, with an error of at most 32 units.
+    /// A constant from a few operations and one function of libm in long double: off by 32 units at most.
     explicit Constant(long double value)
         : Constant(value, std::fabs(static_cast<double>(value)) * 32 * Rounded<long double>::kUnit) {}
 

@@ -7,23 +7,14 @@
 namespace anamorph {
 namespace {
 
-/// The map and its picture.
-class FlatPicture {
-  public:
-    FlatPicture(const FlatRequest& r, FlatMap map) : m_says(std::move(map.says)) {
-        m_picture.maps = {{std::move(map.blocks), {{Border(r.source, r.wrap)}}}};
-        m_picture.filter = r.filter;
-        m_picture.output = r.output;
-    }
-    const Picture& picture() const { return m_picture; }
-    Attributes says(const ParallelFor& parallel_for) const {
-        return m_says ? m_says(parallel_for) : Attributes{};
-    }
-
-  private:
-    Picture m_picture;
-    std::function<Attributes(const ParallelFor&)> m_says;
-};
+Picture flat_picture(const FlatRequest& request, FlatMap map) {
+    Picture picture;
+    picture.maps = {{std::move(map.blocks), {{Border(request.source, request.wrap)}}}};
+    picture.filter = request.filter;
+    picture.output = request.output;
+    picture.says = std::move(map.says);
+    return picture;
+}
 
 /// Copied by itself, a variant with a string that memory is too short for ends the program (libstdc++ 12).
 Attribute copy_of(const Attribute& attribute) {
@@ -49,9 +40,7 @@ class FlatPictures final : public Pictures {
             for (const Attribute& attribute : *m_request.says) picture.says.push_back(copy_of(attribute));
         if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
         picture.solve = [request = m_request, make_map = m_make_map, size = *size] {
-            return std::make_unique<Solved<FlatPicture>>(
-                FlatPicture(request, make_map(size)),
-                [](const FlatPicture& of, const ParallelFor& parallel_for) { return of.says(parallel_for); });
+            return solved(flat_picture(request, make_map(size)));
         };
         return picture;
     }

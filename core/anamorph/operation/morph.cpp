@@ -192,8 +192,8 @@ class Morphs final : public Pictures {
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
         picture.solve = [request, options, features = m_features] {
-            return std::make_unique<Solved<Morph>>(
-                Morph(features, request.pictures, request.width, request.height, options));
+            return solved(
+                morphed_picture(features, request.pictures, {request.width, request.height}, options));
         };
         return picture;
     }

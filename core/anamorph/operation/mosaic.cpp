@@ -124,40 +124,40 @@ MosaicRequest read_request(const ParameterValues& values, const SourceFacts& fac
     return request;
 }
 
+Picture picture_of(const MosaicRequest& request) {
+    Picture picture = mosaic_picture(request.view(), request.stack, request.options, request.circle);
+    if (request.distortion) picture.value = distortion_of(request.view(), request.stack, *request.nearest);
+    if (request.nearest)
+        picture.says = [stack = request.stack, nearest = *request.nearest](const ParallelFor&) -> Attributes {
+            return {{"anamorph:vertical_distortion", stack.vertical_distortion(nearest)}};
+        };
+    return picture;
+}
+
+/// The panoramas are strips of one source.
 class SolvedMosaic final : public SolvedPicture {
   public:
     explicit SolvedMosaic(const MosaicRequest& request)
-        : m_view(request.view(), request.stack, request.options, request.circle),
-          m_picture(m_view.picture()),
-          m_panorama{request.panorama.width(), request.panorama.height()},
-          m_nearest(request.nearest) {
-        if (request.distortion)
-            m_picture.value = distortion_of(request.view(), request.stack, *request.nearest);
-    }
+        : m_picture(solved(picture_of(request))),
+          m_circles(request.stack.circles),
+          m_height(request.panorama.height()) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
-        const Reached reached = m_picture.reached(parallel_for);
-        Attributes all = {{"anamorph:max_error", reached.max_error},
-                          {"anamorph:exact_fraction", reached.exact_fraction}};
-        if (m_nearest)
-            all.push_back({"anamorph:vertical_distortion", m_view.stack().vertical_distortion(*m_nearest)});
-        return all;
+        return m_picture->reached(parallel_for);
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
         std::deque<StripSource> strips;
         std::vector<const Source*> panoramas;
         const Source* stack = sources.empty() ? nullptr : sources[0];
-        for (int i = 0; stack && i < m_view.stack().circles; ++i)
-            panoramas.push_back(&strips.emplace_back(*stack, i * m_panorama.height, m_panorama.height));
-        return m_picture.draw(panoramas, box, view, parallel_for);
+        for (int i = 0; stack && i < m_circles; ++i)
+            panoramas.push_back(&strips.emplace_back(*stack, i * m_height, m_height));
+        return m_picture->draw(panoramas, box, view, parallel_for);
     }
 
   private:
-    ConcentricView m_view;
-    Picture m_picture;
-    Size m_panorama;
-    std::optional<double> m_nearest;
+    std::unique_ptr<const SolvedPicture> m_picture;
+    int m_circles, m_height;
 };
 
 class Mosaics final : public Pictures {

@@ -9,6 +9,15 @@ namespace anamorph {
 #include "anamorph/operation/list.h"
 #undef ANAMORPH_OPERATION
 
+std::unique_ptr<const Pictures> Operation::read(const OperationInput& input) const {
+    const std::size_t given = input.sources.size();
+    if (given < least_sources || given > sources.size())
+        throw Error("sources", std::to_string(given),
+                    name + " takes " + std::to_string(least_sources) +
+                        (least_sources < sources.size() ? " to " + std::to_string(sources.size()) : ""));
+    return make(input);
+}
+
 const std::vector<const Operation*>& operations() {
     static const std::vector<const Operation*> all = {
 #define ANAMORPH_OPERATION(name) &name##_operation(),

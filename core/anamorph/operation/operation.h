@@ -13,12 +13,12 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "anamorph/chart/chart.h"
 #include "anamorph/error.h"
 #include "anamorph/geometry/size.h"
+#include "anamorph/image/attribute.h"
 #include "anamorph/image/source.h"
 #include "anamorph/operation/side_files.h"
 #include "anamorph/parallel_for.h"
@@ -44,19 +44,11 @@ struct SourceFacts {
 struct SourceImage {
     SourceFacts facts;
     int channels = 0;
-    std::string color_space;
+    std::string color_space = {};
     int alpha = -1;  ///< the channel of alpha, whether colours are multiplied with it or not
 
     Size size() const { return {facts.width, facts.height}; }
 };
-
-/// What a picture says of itself: "anamorph:max_error" and so on.
-struct Attribute {
-    std::string name;
-    std::variant<int, double, std::string> value;
-};
-/// In the order in which they were made.
-using Attributes = std::vector<Attribute>;
 
 /// A picture, ready to draw any part of itself. Thread safe.
 class SolvedPicture {
@@ -102,7 +94,7 @@ class Pictures {
     virtual int frames() const { return 1; }
     /// A frame, or a coarser level of it; none past the last level.
     virtual std::optional<PictureRequest> picture(int frame, int level) const = 0;
-    /// Of the first source.
+    /// How the first source is divided.
     virtual SourceFaces faces() const { return {}; }
 };
 
@@ -127,7 +119,7 @@ struct LinkedFile {
     std::string name;
     bool image = false;  ///< it is drawn: the picture's sources go on with it
 };
-/// In the order in which they are named.
+/// Linked files, in the order in which they are named.
 using LinkedFiles = std::vector<LinkedFile>;
 
 /// An entry of the registry.
@@ -138,28 +130,32 @@ struct Operation {
     std::vector<std::string> sources;  ///< keys of the images it draws; may be none
     std::size_t least_sources;
     Example example;  ///< for sources of any kind that are as large
-    /// Throws Error.
-    std::unique_ptr<const Pictures> (*read)(const OperationInput& input);
+    /// What read() calls.
+    std::unique_ptr<const Pictures> (*make)(const OperationInput& input);
 
     /// The key of the side file that is by default the recipe's name without its ending; may be none.
     std::string main_file = {};
-    /// Of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
+    /// The endings of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
     std::vector<std::string> endings = {};
     /// The files that these name; the picture changes with them. May be null. Throws Error.
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
                           const SideFileReader& reader) = nullptr;
+
+    /// Makes pictures of what it is given: of `least_sources` sources or more, up to one for each of its keys, and of the side files
+    /// that the values of keys of type file and image name, which the host has entered by these keys. Throws Error.
+    std::unique_ptr<const Pictures> read(const OperationInput& input) const;
 };
 
 /// All operations, in the order of list.h.
 const std::vector<const Operation*>& operations();
 
-/// Null where there is none of that name.
+/// The operation of that name; null where there is none.
 const Operation* find_operation(std::string_view name);
 
-/// "pano, warp, morph", for messages.
+/// The names of all operations, "pano, warp, morph", for messages.
 std::string operation_names();
 
-/// Made of all that `read` is given: the same text, the same pictures. The sources' pixels are none of it.
+/// A text made of all that `read` is given: the same text, the same pictures. The sources' pixels are none of it.
 std::string operation_key(const Operation& operation, const ParameterValues& values,
                           const std::vector<SourceImage>& sources, const SideFiles& files);
 

@@ -267,25 +267,19 @@ std::optional<Chart> half_size(const Chart& chart) {
 namespace {
 
 /// A panorama drawn by a bump unit.
-class BumpedPicture {
-  public:
-    BumpedPicture(const ReprojectRequest& request)
-        : m_plan(std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine)) {
-        m_picture.maps = {{m_plan, {{Border(request.source.chart, request.options.wrap)}}}};
-        m_picture.filter = request.options.filter;
-        m_picture.output = request.options.output;
-    }
-    const Picture& picture() const { return m_picture; }
-
-    static Attributes saturated(const BumpedPicture& bumped, const ParallelFor& parallel_for) {
-        return {{"anamorph:saturated_pixels", double(bumped.m_plan->saturated_pixels(parallel_for))},
-                {"anamorph:saturated_texels", bumped.m_plan->saturated_texels()}};
-    }
-
-  private:
-    std::shared_ptr<const machine::BumpedPanorama> m_plan;
-    Picture m_picture;
-};
+Picture bumped_picture(const ReprojectRequest& request) {
+    const auto plan = std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine);
+    Picture picture;
+    picture.maps = {{plan, {{Border(request.source.chart, request.options.wrap)}}}};
+    picture.filter = request.options.filter;
+    picture.output = request.options.output;
+    picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
+        return {{"anamorph:saturated_pixels", double(plan->saturated_pixels(parallel_for))},
+                {"anamorph:saturated_texels", plan->saturated_texels()}};
+    };
+    picture.reached_by_drawing = true;
+    return picture;
+}
 
 class Panos final : public Pictures {
   public:
@@ -306,11 +300,9 @@ class Panos final : public Pictures {
             picture.moves = 0;
         if (!request.machine) picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back(request.source.says());
-        picture.solve = [request]() -> std::unique_ptr<const SolvedPicture> {
-            if (request.machine)
-                return std::make_unique<Solved<BumpedPicture>>(BumpedPicture(request),
-                                                               BumpedPicture::saturated, true);
-            return std::make_unique<Solved<Reprojection>>(Reprojection(request.map(), request.options));
+        picture.solve = [request] {
+            return solved(request.machine ? bumped_picture(request)
+                                          : reprojected_picture(request.map(), request.options));
         };
         return picture;
     }

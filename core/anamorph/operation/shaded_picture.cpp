@@ -32,26 +32,20 @@ Border border_of(const WarpRequest& request) {
 }
 
 /// A warp drawn by a pixel-shader unit.
-class ShadedPicture {
-  public:
-    ShadedPicture(const WarpMap& map, const WarpRequest& request) : m_warp(shaded_warp(map, request)) {
-        const MeshWarpOptions& options = request.options;
-        m_picture.maps = {{m_warp, {{border_of(request)}}}};
-        m_picture.filter = options.filter;
-        m_picture.output = options.output;
-        if (options.folds)
-            m_picture.value = [p = m_warp.get()](double x, double y) { return p->exact_plan().folds(x, y); };
-    }
-    const Picture& picture() const { return m_picture; }
-
-    static Attributes saturated(const ShadedPicture& shaded, const ParallelFor& parallel_for) {
-        return {{"anamorph:saturated_pixels", double(shaded.m_warp->saturated_pixels(parallel_for))}};
-    }
-
-  private:
-    std::shared_ptr<const machine::ShadedWarp> m_warp;
-    Picture m_picture;
-};
+Picture warped_by_shader(const WarpMap& map, const WarpRequest& request) {
+    const std::shared_ptr<const machine::ShadedWarp> warp = shaded_warp(map, request);
+    Picture picture;
+    picture.maps = {{warp, {{border_of(request)}}}};
+    picture.filter = request.options.filter;
+    picture.output = request.options.output;
+    if (request.options.folds)
+        picture.value = [warp](double x, double y) { return warp->exact_plan().folds(x, y); };
+    picture.says = [warp](const ParallelFor& parallel_for) -> Attributes {
+        return {{"anamorph:saturated_pixels", double(warp->saturated_pixels(parallel_for))}};
+    };
+    picture.reached_by_drawing = true;
+    return picture;
+}
 
 /// The colors that a program of the user's makes.
 class ProgrammedPicture final : public SolvedPicture {
@@ -140,8 +134,7 @@ std::optional<machine::ShaderProgram> read_shader(const OperationInput& input) {
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request) {
     const bool is_color = !request.options.folds && request.options.output == Output::color;
     if (request.program && is_color) return std::make_unique<ProgrammedPicture>(map, request);
-    return std::make_unique<Solved<ShadedPicture>>(ShadedPicture(map, request), ShadedPicture::saturated,
-                                                   true);
+    return solved(warped_by_shader(map, request));
 }
 
 }  // namespace anamorph

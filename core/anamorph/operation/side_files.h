@@ -11,8 +11,7 @@
 
 namespace anamorph {
 
-/// The name of a side file, and its identity, which tells its states apart: if it is not empty, what was read of the file
-/// is kept.
+/// A file. With an identity, which tells its states apart, what was read of it is kept.
 struct SideFile {
     std::string name, identity;
     bool image = false;  ///< the file is opened as an image, and so may be a recipe

@@ -184,10 +184,6 @@ std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const Operat
     return map;
 }
 
-Attributes folded(const MeshWarp& warp, const ParallelFor& parallel_for) {
-    return {{"anamorph:folded_fraction", warp.folded_fraction(parallel_for)}};
-}
-
 class Warps final : public Pictures {
   public:
     Warps(const WarpRequest& request, std::shared_ptr<const WarpMap> map)
@@ -211,10 +207,7 @@ class Warps final : public Pictures {
             const WarpMap& given = *map;
             const WarpMap here = level > 0 ? in_fractions(given, whole.source, whole.target) : given;
             if (request.machine) return shaded_picture(here, request);
-            return std::make_unique<Solved<MeshWarp>>(
-                MeshWarp(here, whole.source.width, whole.source.height, request.target.width,
-                         request.target.height, request.options),
-                folded);
+            return solved(warped_picture(here, whole.source, request.target, request.options));
         };
         return picture;
     }

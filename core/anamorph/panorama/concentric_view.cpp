@@ -42,26 +42,30 @@ auto weights_of(const Panorama& view, const ConcentricStack& stack, int circle) 
     };
 }
 
-}  // namespace
-
-ConcentricView::ConcentricView(const Panorama& view, const ConcentricStack& stack,
-                               const ReprojectOptions& options, std::optional<int> circle)
-    : m_stack(stack) {
-    if (options.output == Output::stmap && !circle) circle = stack.circles / 2;
-    m_picture.filter = options.filter;
-    m_picture.output = options.output;
-    if (circle || stack.circles == 1)
-        add(view, circle.value_or(0), false, options);
-    else
-        for (int i = 0; i < stack.circles; ++i) add(view, i, true, options);
+/// One circle's panorama in a view.
+Picture::Map panorama_of(const Panorama& view, const ConcentricStack& stack, int circle, bool mixed,
+                         const ReprojectOptions& options) {
+    auto plan =
+        std::make_shared<ConcentricPlan>(ConcentricMap(view, stack, circle, !mixed), plan_options(options));
+    Picture::Layer layer{Border(view.source(), options.wrap), circle};
+    if (mixed) layer.weights = weights_of(view, stack, circle);
+    return {std::move(plan), {std::move(layer)}};
 }
 
-void ConcentricView::add(const Panorama& view, int circle, bool mixed, const ReprojectOptions& options) {
-    auto plan =
-        std::make_shared<ConcentricPlan>(ConcentricMap(view, m_stack, circle, !mixed), plan_options(options));
-    Picture::Layer layer{Border(view.source(), options.wrap), circle};
-    if (mixed) layer.weights = weights_of(view, m_stack, circle);
-    m_picture.maps.push_back({std::move(plan), {std::move(layer)}});
+}  // namespace
+
+Picture mosaic_picture(const Panorama& view, const ConcentricStack& stack, const ReprojectOptions& options,
+                       std::optional<int> circle) {
+    if (options.output == Output::stmap && !circle) circle = stack.circles / 2;
+    Picture picture;
+    picture.filter = options.filter;
+    picture.output = options.output;
+    if (circle || stack.circles == 1)
+        picture.maps = {panorama_of(view, stack, circle.value_or(0), false, options)};
+    else
+        for (int i = 0; i < stack.circles; ++i)
+            picture.maps.push_back(panorama_of(view, stack, i, true, options));
+    return picture;
 }
 
 std::function<float(double x, double y)> distortion_of(const Panorama& view, const ConcentricStack& stack,

@@ -39,9 +39,9 @@ class Panorama {
         Branch target, source;
         glm::dmat3 rotation;
     };
-    /// The branch of the map for a neighbourhood of a target point.
+    /// The map about a target point, for its neighbourhood.
     Local local_around(double x, double y, int piece) const;
-    /// The branch of the map for a neighbourhood of a target point, with the source's branch about `source_ray`.
+    /// The map about a target point, with the source's branch about another ray of it.
     Local local_around(double x, double y, int piece, const Ray<double>& source_ray) const;
 
     // The members that make this a FormulaMap (plan/formula_map.h).
@@ -56,7 +56,7 @@ class Panorama {
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
     /// Whether the points of a box have rays, on one branch of the target.
     Cover target_cover(const Interval& x, const Interval& y, int piece) const;
-    /// Whether the source's local rays of a box have source points on one branch.
+    /// Whether local rays of the source, of target points that have one, have source points on one branch.
     Cover cover(const Ray<Interval>& ray, const Local& local, bool across_seam) const;
 
     /// The source's ray of a target point.
@@ -100,7 +100,7 @@ class Panorama {
     /// infinite where it is not certain that there is one.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
-    /// Bounds the rounding of exact<Real> over a set of rays of the source, as exact_error() of a box does.
+    /// Bounds the rounding of exact<Real> over rays of the source.
     template <class Real>
     double exact_error(const Ray<Rounded<Real>>& ray) const;
 

@@ -25,7 +25,7 @@ struct NumberRow {
     bool holds(double value) const;
     /// The range in words: "a number from 0 to 0.5", "an integer of at least 1".
     std::string range() const;
-    /// Throws Error naming `parameter` (by default the row) unless the value is finite and in the range.
+    /// Checks a value. Throws Error naming `parameter` (by default the row) unless the value is in the range.
     void check(double value, const char* parameter = nullptr) const;
 };
 

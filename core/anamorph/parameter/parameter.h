@@ -52,7 +52,7 @@ struct Parameter {
 
     /// The accepted values in words: "a number from 0 to 10", "edges, centers".
     std::string accepted() const;
-    /// The rule of the accepted values for a message: "must be a number from 0 to 10", "must be one of edges, centers".
+    /// The allowed values for a message: "must be a number from 0 to 10", "must be one of edges, centers".
     std::string rule() const;
 };
 
@@ -78,11 +78,11 @@ class ParameterValues {
     /// Sets a parameter of type number, whole or toggle, or a name that is defined. Throws Error on a name that is not
     /// known and a value that is not allowed.
     void set(std::string_view name, double value) { set(name, std::vector<double>{value}); }
-    /// Sets a parameter of type numbers. Throws Error as set() of one number does.
+    /// Takes one value of type numbers.
     void set(std::string_view name, const std::vector<double>& values);
-    /// Sets a parameter of type extent. Throws Error as set() of one number does.
+    /// Takes one value of type extent.
     void set(std::string_view name, const Size& value);
-    /// Sets a parameter of any type from its value as a recipe has it. Throws Error as set() of one number does.
+    /// Takes one value of any type, as it is written.
     void set(std::string_view name, const std::string& text);
 
     const ParameterTable& table() const { return *m_table; }
@@ -90,27 +90,27 @@ class ParameterValues {
     bool knows(std::string_view name) const;
     /// Was this parameter assigned a value?
     bool given(std::string_view name) const { return m_given.find(name) != m_given.end(); }
-    /// The value of a parameter as it was written, or its default. Throws Error where there is no such parameter.
+    /// The value as it was written, or the default.
     const std::string& text(std::string_view name) const;
-    /// The value of a parameter of type number. number(), whole(), numbers() and extent() return the numbers that were
-    /// given, or those of the default, and throw Error where there are none.
+    /// The value of a parameter of type number, whole, numbers, toggle and extent that were given or have a default. Numbers are those
+    /// that were given, read once.
     double number(std::string_view name) const;
-    /// The value of a parameter of type whole.
+    /// The value of a whole number.
     int whole(std::string_view name) const;
-    /// The values of a parameter of type numbers.
+    /// The values of a list of numbers.
     std::vector<double> numbers(std::string_view name) const;
-    /// Is a parameter of type toggle on?
+    /// Is a toggle on?
     bool toggle(std::string_view name) const { return text(name) == "1"; }
     /// Which of its choices a parameter has, counted from 0; the number of choices where it has none of them.
     std::size_t choice(std::string_view name) const;
     /// The value that the choice of a parameter has in its enumeration (Parameter::enumerators).
     int enumerator(std::string_view name) const;
-    /// The value of a parameter of type extent; the height is -1 where only one number was given.
+    /// The value of an extent. Its height is -1 where only one number was given.
     Size extent(std::string_view name) const;
 
     /// The definitions, by keys that are not in the table, in the order in which each key first came.
     const std::vector<Assignment>& definitions() const { return m_definitions; }
-    /// Refuses definitions, for operations that do not read them: throws the Error of an unknown key for the first of them.
+    /// For operations that read no definitions: throws Error of the first, as assign() does of a key that is unknown.
     void refuse_definitions() const;
 
     /// All values as one text, which differs where any value does; `without` names the parameters to leave out.

@@ -163,7 +163,7 @@ class BlockMap {
     /// Finds the source point of a target point by the formula in double. False where there is none.
     virtual bool exact(double x, double y, int piece, Point<double>& source_point,
                        int& source_piece) const noexcept = 0;
-    /// Does exact() find a source point for this target point?
+    /// Does exact() find a source point?
     virtual bool seen(double x, double y, int piece) const noexcept;
     /// Finds the source point as precisely as the map can, as the reference for measuring errors; in double by default.
     virtual bool truth(double x, double y, int piece, Point<long double>& source_point,

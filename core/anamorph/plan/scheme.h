@@ -20,7 +20,7 @@ enum class Scheme { automatic, exact, blocks, residual, direct };
 /// patches (pairs of points, and push meshes) have exact and automatic only, and take automatic for the other two.
 enum class WarpScheme { automatic, exact, hermite, residual };
 
-/// Throws Error unless `tol`, in source pixels, is 0 (exact) or a finite number above it.
+/// Checks a tolerance. Throws Error unless `tol`, in source pixels, is 0 (exact) or a finite number above it.
 void check_tol(double tol);
 
 }  // namespace anamorph

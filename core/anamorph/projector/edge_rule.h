@@ -87,7 +87,7 @@ class EdgeRule {
     EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches, double share,
                            double wider) const;
 
-    /// The share of the tolerance that edges have to hold.
+    /// The share of the tolerance that edges may take.
     static constexpr double kShare = 0.9;
     /// The share by which boxes about edges are enlarged, so that triangles along them do not fail narrowly.
     static constexpr double kWider = 0.02;

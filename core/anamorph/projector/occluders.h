@@ -26,14 +26,14 @@ struct ShadowScale {
 
 /// How much of a triangle is in shadows.
 struct ShadowCover {
-    /// The part of the triangle that is in shadows.
+    /// How much of the triangle is hidden.
     enum Share {
         lit,     ///< none of it is hidden
         hidden,  ///< all of it is hidden
         both     ///< some of it is hidden
     };
-    Share share = lit;
-    /// Where the share is both: the weights of a point within the triangle, a corner of a shadow if there is one.
+    Share share = lit;  ///< what there is of shadows
+    /// Weights of a point within the triangle where its share is both, a corner of a shadow if there is one.
     glm::dvec3 corner{1. / 3};
     bool has_corner = false;  ///< is `corner` a corner of a shadow?
     bool mostly_lit = false;  ///< where the share is both: is more than half of the triangle's area lit?
@@ -42,8 +42,8 @@ struct ShadowCover {
 /// Triangles that hide what is behind them from a point.
 class Occluders {
   public:
-    /// The distance from a point, relative to that from the centre, within which nothing hides the point: a surface does
-    /// not hide itself, nor what touches it.
+    /// Nothing as near to a point as this, relative to its distance from the centre, hides it: a surface does not hide
+    /// itself, nor what touches it.
     static constexpr double kTouching = 0x1p-16;
 
     /// `corners`: three for each triangle. Triangles that are not finite, or seen edge-on, hide nothing.
@@ -56,7 +56,7 @@ class Occluders {
     /// Finds the first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
     /// Stretches shorter than `hair` do not count.
     double border(const glm::dvec3& a, const glm::dvec3& b, double hair, const ShadowScale& scale) const;
-    /// Finds how much of a triangle is in shadows.
+    /// How much of a triangle is in shadows.
     ShadowCover cover(const std::array<glm::dvec3, 3>& triangle, const ShadowScale& scale) const;
 
     /// A triangle that hides a point, of ray r from the centre, if normals[k] . r >= 0 for its three sides and
@@ -90,7 +90,7 @@ class Occluders {
 
     void build(std::vector<std::array<glm::dvec3, 3>>& triangles, std::size_t begin, std::size_t end);
     static bool meets(const Node& node, const std::vector<HalfSpace>& region);
-    /// Calls `body` for the triangles that may be in a convex region, until it returns false.
+    /// Calls `body` with the occluders that may be in a convex region, until `body` returns false.
     void for_each_in(const std::vector<HalfSpace>& region,
                      const std::function<bool(const Occluder&)>& body) const;
     static std::vector<HalfSpace> region_before(const std::array<glm::dvec3, 3>& rays);

@@ -19,8 +19,8 @@ namespace anamorph {
 /// How a scene is painted with a panorama.
 struct ProjectionOptions {
     double tol = kProjectionTolRow.standard;
-    /// The length, in units of the scene, of the shortest edges that are split. About 2^-20 of the scene's size is right for
-    /// points in float.
+    /// Edges as short as this, in units of the scene, are not split any further. About 2^-20 of the scene serves points in
+    /// float.
     double smallest = 0;
     /// Are points of the scene kept in float? New points are then rounded to float.
     bool single = false;
@@ -68,7 +68,7 @@ struct PaintedCounts {
 /// Paints the triangles of a scene with a panorama.
 class ScenePainter {
   public:
-    /// Throws Error on options out of range.
+    /// A painter of scenes for a projector. Throws Error where an option is out of its range.
     ScenePainter(const Projector& projector, const ProjectionOptions& options);
 
     /// Appends the pieces of a triangle to `to`. May be called from several threads at once. Throws Error where there are too

@@ -52,7 +52,7 @@ class ProjectionGroups {
 
     /// The groups, in the order of the directions.
     const std::vector<ProjectionGroup>& groups() const { return m_groups; }
-    /// The options as they were given.
+    /// The options that it was made with.
     const GroupOptions& options() const { return m_options; }
 
     /// The group in whose field of view a triangle of the scene lies, of several the one with the triangle nearest to its

@@ -33,7 +33,7 @@ enum class Received {
 /// A panorama and the pose of its projector.
 class Projector {
   public:
-    /// Throws what frame_of() throws.
+    /// A panorama thrown from a pose. Throws what frame_of() throws.
     explicit Projector(const Chart& panorama, const ProjectorPose& pose = {});
 
     const Chart& panorama() const { return m_panorama; }

@@ -8,7 +8,7 @@ namespace anamorph {
 
 /// The largest error of the texel that a point of the scene is painted with, in texels of the panorama.
 inline constexpr NumberRow kProjectionTolRow{"projection_tol", 0.125, 0, 1e6, NumberRow::above_least};
-/// The width of the panorama in texels; below, its height.
+/// The width of the panorama, in texels.
 inline constexpr NumberRow kPanoramaWidthRow{"panorama_width", 4096, 1, 1 << 24, NumberRow::closed, true};
 inline constexpr NumberRow kPanoramaHeightRow{"panorama_height", 2048, 1, 1 << 24, NumberRow::closed, true};
 /// The horizontal field of view of the panorama, or of each of its faces, in degrees; 0: the projection's default.

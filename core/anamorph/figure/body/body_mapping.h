@@ -58,7 +58,7 @@ void texture_point(BodyMapping mapping, const T& x, const T& y, const T& z, T& u
         u = 0.5 + arcsine(x, y, z) * (1 / pi);
 }
 
-/// The texture coordinates (u, v) of the point p of the unit sphere.
+/// (u, v) of a point of the unit sphere, in double.
 inline glm::dvec2 texture_point(BodyMapping mapping, const glm::dvec3& p) {
     glm::dvec2 uv(0.0);
     texture_point(mapping, p.x, p.y, p.z, uv.x, uv.y);

@@ -19,7 +19,7 @@ inline constexpr NumberRow kLevelOfDetailRow{"level_of_detail", 0, 0};
 inline constexpr NumberRow kViewSizeRow{"view_size", 500, 1, NumberRow::kNoEnd, NumberRow::closed, true};
 /// Half the height of an orthographic view, in units of the scene.
 inline constexpr NumberRow kParallelScaleRow{"camera_parallel_scale", 500, 0, 1e50, NumberRow::between};
-/// The vertical angle of a view in perspective, in degrees.
+/// The angle from bottom to top of a view in perspective, in degrees.
 inline constexpr NumberRow kViewAngleRow{"camera_view_angle", 30, 0, 180, NumberRow::between};
 
 inline constexpr NumberRow kFigureRows[] = {kSurfaceTolRow,    kOutlineTolRow, kSphereTolRow,

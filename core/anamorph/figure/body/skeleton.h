@@ -18,11 +18,11 @@ struct Stick {
 
 /// The longest axis of each body from end to end (the first of equal ones), in their order.
 std::vector<Stick> axis_sticks(std::span<const Ellipsoid> bodies);
-/// The longest axis of each body of a frame, as axis_sticks() of its ellipsoids.
+/// The longest axis of each body of a frame, in their order.
 std::vector<Stick> axis_sticks(const FigureFrame& frame);
 
-/// The sticks of a frame's joints: from the centre of each body to each of its joints, but a body with two joints has
-/// one stick between them instead. Bodies without joints have no sticks.
+/// Sticks from joint to joint: for each body with joints, from its centre to each of them; a body with two joints has one stick
+/// between them instead. Bodies without joints have none.
 std::vector<Stick> joint_sticks(const FigureFrame& frame);
 
 }  // namespace anamorph::figure

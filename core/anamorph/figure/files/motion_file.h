@@ -31,9 +31,9 @@ bool is_motion_file(std::string_view name);
 /// file and the line or entry.
 std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name);
 
-/// Reads the text of a BVH file, whatever its name. Throws Error as read_motion() does.
+/// Reads the text of a BVH file, whatever its name. Throws Error naming the file and the line.
 std::unique_ptr<Motion> read_bvh(std::string_view text, std::string_view name);
-/// Reads the text of a CIF file, whatever its name. Throws Error as read_motion() does.
+/// Reads the text of a CIF file, whatever its name. Throws Error naming the file and the entry.
 std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name);
 
 }  // namespace anamorph::figure

@@ -11,6 +11,7 @@
 #include "anamorph/figure/image/body_texture.h"
 #include "anamorph/figure/image/visible_surfaces.h"
 #include "anamorph/figure/outline/stroke_pixels.h"
+#include "anamorph/image/canvas.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/strips.h"
 
@@ -227,6 +228,9 @@ struct FigurePicture::Impl {
 
 FigurePicture::FigurePicture(FigureFrame frame, const View& view, const Size& size, const FigureLook& look,
                              const ParallelFor& parallel_for) {
+    if (size.width < 1 || size.height < 1)
+        throw Error("size", std::to_string(size.width) + "x" + std::to_string(size.height),
+                    "must be at least 1x1 pixels");
     auto impl = std::make_unique<Impl>(Impl{std::move(frame), view, size, look});
     const FigureFrame& own = impl->frame;
     for (const Body& body : own.bodies) {
@@ -249,6 +253,7 @@ FigurePicture::FigurePicture(FigurePicture&&) noexcept = default;
 
 void FigurePicture::draw(const Box& box, const ImageView& pixels, const ParallelFor& parallel_for,
                          const std::vector<const Source*>& textures) const {
+    check_room(pixels, box);
     const auto channels =
         static_cast<std::size_t>(std::min(channels_of(m_impl->look.style), pixels.channels));
     const Box picture = {0, 0, m_impl->size.width, m_impl->size.height};

@@ -60,7 +60,7 @@ struct FigureLook {
 /// u and v, else one.
 int channels_of(FigureStyle style);
 
-/// Draws a frame of a figure as pixels. Thread safe.
+/// A frame ready to be drawn, any part of it at a time. Thread safe.
 class FigurePicture {
   public:
     /// `view`: the origin of its screen is the picture's lower left corner. Throws Error as outlines() does.

@@ -40,9 +40,9 @@ struct PerformanceOptions {
     std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };
 
-/// The motion that a program performs. Where frame numbers of the script are variables, last_frame() performs it to
-/// find the last one. Frames may be asked for up to the last that the script performs, shown or not; frame() also
-/// throws Error naming the line of the script where performing it fails.
+/// A program that is performed. Where frame numbers of the script are variables, asking for the last one performs it. Frames may be asked
+/// for up to the last that the script performs, shown or not; frame() throws Error, too, naming the line of
+/// the script where performing it fails.
 class Performance final : public Motion {
   public:
     /// `program`: the program of a script without errors.

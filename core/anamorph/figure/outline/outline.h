@@ -54,7 +54,7 @@ struct Outline {
     glm::dvec2 on_screen(double angle, const View& view) const { return view.to_screen(viewed(angle)); }
     /// The angle on `screen` of the limb's point at `angle`, in radians.
     double screen_angle(double angle, const View& view) const;
-    /// The angle on the limb, in radians, of the point at `screen_angle` of `screen`; the inverse of screen_angle().
+    /// The angle on the limb of the point at `screen_angle` of `screen`.
     double limb_angle(double screen_angle, const View& view) const;
 };
 
@@ -84,11 +84,11 @@ struct Outlines {
     std::vector<CrossingCurve> crossings;
 };
 
-/// Finds the outlines of bodies. Throws Error when a body has a value that is not finite or larger than 1e25, or axes of rotation that are
+/// Outlines bodies in a view. Throws Error when a body has a value that is not finite or larger than 1e25, or axes of rotation that are
 /// not orthonormal to 1e-6 (naming the body), and when the view or an option is out of its range.
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options = {},
                   const ParallelFor& parallel_for = serial_for);
-/// Finds the outlines of the bodies of a frame, whose names stand in messages.
+/// Outlines the bodies of a frame; messages call them by their names.
 Outlines outlines(const FigureFrame& frame, const View& view, OutlineOptions options = {},
                   const ParallelFor& parallel_for = serial_for);
 

@@ -53,14 +53,14 @@ inline View view_of(const FigureFrame& frame, double scale = 1) {
     return view;
 }
 
-/// The view of a frame in the window of NUDES in the middle of a picture of `size` pixels, as large as fits.
+/// The window of NUDES in the middle of a picture of `size` pixels, as large as fits.
 inline View view_in(const FigureFrame& frame, const glm::dvec2& size) {
     View view = view_of(frame, (size.x < size.y ? size.x : size.y) / 1000);
     view.middle = 0.5 * size;
     return view;
 }
 
-/// Throws Error naming the field of `view` that is out of its range.
+/// Checks a view. Throws Error naming the field of `view` that is out of its range.
 void check(const View& view);
 
 }  // namespace anamorph::figure

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/operation/solved.h"
+
+#include <utility>
+
+namespace anamorph {
+namespace {
+
+class Solved final : public SolvedPicture {
+  public:
+    explicit Solved(Picture picture) : m_picture(std::move(picture)) {}
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_picture.reached(parallel_for);
+        Attributes all = {{"anamorph:max_error", reached.max_error},
+                          {"anamorph:exact_fraction", reached.exact_fraction}};
+        if (m_picture.says)
+            for (Attribute& attribute : m_picture.says(parallel_for)) all.push_back(std::move(attribute));
+        return all;
+    }
+    bool reached_by_drawing() const override { return m_picture.reached_by_drawing; }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_picture.draw(sources, box, view, parallel_for);
+    }
+
+  private:
+    Picture m_picture;
+};
+
+}  // namespace
+
+PixelKind pixels_of(Output output) {
+    switch (output) {
+        case Output::stmap:
+            return PixelKind::point;
+        case Output::error:
+        case Output::bound:
+            return PixelKind::value;
+        default:
+            return PixelKind::color;
+    }
+}
+
+std::unique_ptr<const SolvedPicture> solved(Picture picture) {
+    return std::make_unique<Solved>(std::move(picture));
+}
+
+}  // namespace anamorph
