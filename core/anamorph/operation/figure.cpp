@@ -543,7 +543,7 @@ const Operation& figure_operation() {
         .sources = {},
         .least_sources = 0,
         .example = {"script=doll.nudes&size=48x24", {{"doll.nudes", kExampleScript}}},
-        .read = read_figures,
+        .make = read_figures,
         .main_file = "script",
         .endings = {"n", "nudes", "bvh", "cif", "mrasel"},
         .linked = linked_files};
