@@ -58,7 +58,7 @@ class Waves {
         const Chart flat(Projection::rectilinear, m_size.width, m_size.height);
         picture.maps = {{map(machine), {{Border(flat, Wrap::clamp)}}}};
         picture.filter = m_options.filter;
-        picture.draw({&source()}, whole(), view(), serial_for);
+        picture.draw(&source(), whole(), view(), serial_for);
     }
     /// How far what is shown is from where it belongs, of all pixels where something is.
     Accuracy accuracy(const BlockMachineMap& map) const {

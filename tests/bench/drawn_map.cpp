@@ -32,7 +32,7 @@ void MapDrawing::draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>
     const MemorySource source(packed_view<const std::byte>(m_texels.bytes(), PixelType::float32,
                                                            map.source.width(), map.source.height(), 3));
     const int side = m_settings.size;
-    picture.draw({&source}, {0, 0, side, side},
+    picture.draw(&source, {0, 0, side, side},
                  packed_view(m_picture.bytes(), PixelType::float32, side, side, 3), m_pool.parallel_for());
 }
 

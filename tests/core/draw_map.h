@@ -13,7 +13,7 @@ inline bool draw_map(const BlockMap& map, const Border& border, Filter filter, O
     picture.maps = {{{std::shared_ptr<const void>(), &map}, {{border}}}};
     picture.filter = filter;
     picture.output = output;
-    return picture.draw({source}, box, view, parallel_for);
+    return picture.draw(source, box, view, parallel_for);
 }
 
 }  // namespace anamorph::test

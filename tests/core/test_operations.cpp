@@ -130,8 +130,9 @@ TEST(Operations, TooFewAndTooManySourcesAreRefused) {
         const std::size_t least = operation->least_sources, most = operation->sources.size();
         EXPECT_THAT(message(most + 1),
                     HasSubstr("sources=" + std::to_string(most + 1) + ": " + operation->name));
-        if (least > 0)
+        if (least > 0) {
             EXPECT_THAT(message(least - 1), HasSubstr("sources=" + std::to_string(least - 1) + ": "));
+        }
     }
 }
 

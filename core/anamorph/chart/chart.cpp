@@ -53,7 +53,7 @@ std::vector<Piece> face_pieces(Projection projection, int width, int height, con
 
 /// What messages call a chart's size: a source's is no key.
 std::string size_name(const std::string& prefix) {
-    return prefix.empty() ? "size" : "source size";
+    return (prefix == "src" ? "source " : prefix) + "size";
 }
 
 }  // namespace

@@ -404,7 +404,7 @@ class SolvedByBlocks final : public SolvedPicture {
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
-        return m_picture.draw({sources[0]}, box, view, parallel_for);
+        return m_picture.draw(sources[0], box, view, parallel_for);
     }
 
   private:

@@ -463,7 +463,7 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
                  const Source* backdrop) const {
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
-    if (!source) return m_picture.draw({source}, box, view, parallel_for);
+    if (!source) return m_picture.draw(source, box, view, parallel_for);
     // Sources that keep no sums are lent a place for them.
     std::deque<Pyramid> lent;
     if (m_options.filter == Filter::summed_area)
@@ -477,7 +477,7 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
         picture.overlay = [&](const PixelRows& rows) {
             if (!finish(rows, layers)) ok = false;
         };
-    if (!picture.draw({source}, box, view, parallel_for)) return false;
+    if (!picture.draw(source, box, view, parallel_for)) return false;
     const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
     return ok && (!averages(m_options.filter) || draw_edges(layers, inside, Canvas(view, box), parallel_for));
 }
