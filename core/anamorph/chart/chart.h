@@ -99,7 +99,8 @@ class Chart {
 
     /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
     /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `prefix` is put
-    /// before "fov", "d" and "lens" in errors, and makes "size" the "source size". Throws Error on a value out of range.
+    /// before "fov", "size", "d" and "lens" in errors, and "src" before "size" is "source ". Throws Error on a value out
+    /// of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
           const LensModel& lens = {});
