@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What tests/run.sh leaves out because it takes hours: long tests, longer fuzzing, sanitizers through all hosts, clang, what the
 # tests of the core cover, clang-tidy, and what became of the last version's binary interface. It says how long each step took; the
-# last line is ctest's own summary. tests/nightly.md has the times of a run.
+# last line is ctest's own summary.
 . "$(dirname "$0")/steps.sh"
 tests/install_packages.sh nightly
 
