@@ -4,6 +4,27 @@
 include(${CMAKE_CURRENT_LIST_DIR}/install_and_test.cmake)
 install_and_test()
 
+# Who asks for components gets these alone: no host is looked for, and what is not there is named.
+function(ask components done output)
+    file(WRITE ${WORK_DIR}/components/CMakeLists.txt
+         "cmake_minimum_required(VERSION 3.25)\nproject(Components LANGUAGES CXX)\n"
+         "find_package(Anamorph REQUIRED COMPONENTS ${components})\n"
+         "if(TARGET OpenImageIO::OpenImageIO OR NOT TARGET Anamorph::core)\nmessage(FATAL_ERROR \"other targets\")\nendif()\n")
+    execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK_DIR}/components -B ${WORK_DIR}/components/build
+                            -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix
+                    RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE said)
+    set(${done} ${result} PARENT_SCOPE)
+    set(${output} "${said}" PARENT_SCOPE)
+endfunction()
+ask("core figure" failed said)
+if(failed)
+    message(FATAL_ERROR "components core and figure: ${said}")
+endif()
+ask("core wibble" failed said)
+if(NOT failed OR NOT said MATCHES "there is no component wibble")
+    message(FATAL_ERROR "a component that is not there: ${said}")
+endif()
+
 # A stock host loads the installed plugin.
 file(GLOB_RECURSE plugin ${WORK_DIR}/prefix/anamorph_recipes.imageio.so)
 get_filename_component(plugin_dir "${plugin}" DIRECTORY)

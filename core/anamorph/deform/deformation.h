@@ -86,8 +86,9 @@ struct DeformationChange {
     DeformationChange undo() const { return {after, before}; }
 };
 
-/// A list of deformations and its edits. Each edit returns its change of the surface, whose opposite undoes it. Throws
-/// Error on a deformation that check_deformation refuses and on a position that is not in the list.
+/// A list of deformations and its edits. Each edit returns its change of the surface, whose undo() takes it back there; the list
+/// itself is put back by another edit. Throws Error on a deformation that check_deformation refuses and on a position that is not in
+/// the list.
 class DeformationList {
   public:
     DeformationList() = default;

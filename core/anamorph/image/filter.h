@@ -10,7 +10,8 @@ namespace anamorph {
 /// magnifies and averages over the pixel's footprint, on the pyramid level that fits it, where it minifies.
 /// The last two average over the least rectangle of the source, its sides along the source's own, that covers that
 /// parallelogram (Oka 1987, fig. 2.6), too much of a blur where it lies aslant: pyramid on a level of the pyramid
-/// (Williams 1983), summed_area over all texels, by Source::summed_areas (Crow 1984).
+/// (Williams 1983), summed_area over all texels, by Source::summed_areas (Crow 1984), which a
+/// Pyramid has.
 enum class Filter { nearest, bilinear, bicubic, antialias, pyramid, summed_area };
 
 /// Does a filter average where the map minifies?

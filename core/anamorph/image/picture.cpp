@@ -312,4 +312,19 @@ bool Picture::draw(const std::vector<const Source*>& sources, const Box& box, co
     return ok;
 }
 
+Picture picture_through(std::shared_ptr<const BlockMap> blocks, const Border& border, Filter filter,
+                        Output output) {
+    Picture picture;
+    picture.maps = {{std::move(blocks), {{border}}}};
+    picture.filter = filter;
+    picture.output = output;
+    return picture;
+}
+
+void check_picture_size(const std::string& name, const Size& size) {
+    if (!(size.width > 0 && size.height > 0 && size.width <= kMaxSide && size.height <= kMaxSide))
+        throw Error(name, std::to_string(size.width) + "x" + std::to_string(size.height),
+                    "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
+}
+
 }  // namespace anamorph

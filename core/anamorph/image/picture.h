@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "anamorph/error.h"
@@ -103,5 +104,12 @@ struct Picture {
         return draw(std::vector<const Source*>{source}, box, view, parallel_for);
     }
 };
+
+/// A picture of one source, seen through a map of one layer.
+Picture picture_through(std::shared_ptr<const BlockMap> blocks, const Border& border, Filter filter,
+                        Output output);
+
+/// Checks the size of a picture that `name` is said to have. Throws Error unless it is 1 to kMaxSide pixels either way.
+void check_picture_size(const std::string& name, const Size& size);
 
 }  // namespace anamorph

@@ -28,12 +28,6 @@ std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source
                                       options.tol);
 }
 
-void check_size(const char* name, const Size& size) {
-    if (size.width < 1 || size.height < 1 || size.width > kMaxSide || size.height > kMaxSide)
-        throw Error(name, std::to_string(size.width) + "x" + std::to_string(size.height),
-                    "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
-}
-
 double folded_fraction(const WarpPlan& plan, const ParallelFor& parallel_for) {
     const Box whole{0, 0, plan.width(), plan.height()};
     std::atomic<std::int64_t> folded{0};
@@ -45,14 +39,11 @@ double folded_fraction(const WarpPlan& plan, const ParallelFor& parallel_for) {
 
 Picture warped_picture(const WarpMap& map, const Size& source, const Size& target,
                        const MeshWarpOptions& options) {
-    check_size("source size", source);
-    check_size("size", target);
+    check_picture_size("source size", source);
+    check_picture_size("size", target);
     const std::shared_ptr<const WarpPlan> plan = make_plan(map, source, target, options);
     const Chart flat(Projection::rectilinear, source.width, source.height);
-    Picture picture;
-    picture.maps = {{plan, {{Border(flat, options.wrap)}}}};
-    picture.filter = options.filter;
-    picture.output = options.output;
+    Picture picture = picture_through(plan, Border(flat, options.wrap), options.filter, options.output);
     if (options.folds) picture.value = [plan](double x, double y) { return plan->folds(x, y); };
     picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
         return {{"anamorph:folded_fraction", folded_fraction(*plan, parallel_for)}};

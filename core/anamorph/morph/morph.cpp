@@ -56,16 +56,10 @@ std::vector<double> color_weights(const MorphOptions& options, int shapes) {
                    "t_color");
 }
 
-void check_size(const std::string& name, const Size& size) {
-    if (!(size.width > 0 && size.height > 0 && size.width <= kMaxSide && size.height <= kMaxSide))
-        throw Error(name, std::to_string(size.width) + "x" + std::to_string(size.height),
-                    "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
-}
-
 void check_sizes(const std::vector<Size>& pictures, const Size& target) {
-    check_size("size", target);
+    check_picture_size("size", target);
     for (std::size_t k = 0; k < pictures.size(); ++k)
-        check_size("picture " + std::to_string(k + 1), pictures[k]);
+        check_picture_size("picture " + std::to_string(k + 1), pictures[k]);
 }
 
 Border border_of(const Size& size, Wrap wrap) {

@@ -383,9 +383,7 @@ class SolvedByBlocks final : public SolvedPicture {
           m_schedule(machine::schedule_of(*request.machine(values), m_map->frame().counts, size)) {
         const surface::DrapeOptions options = request.options(values);
         const Chart flat(Projection::rectilinear, request.source().width, request.source().height);
-        m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
-        m_picture.filter = options.filter;
-        m_picture.output = options.output;
+        m_picture = picture_through(m_map, Border(flat, options.wrap), options.filter, options.output);
         if (options.output == Output::error)
             m_picture.value = [map = m_map.get()](double x, double y) {
                 return static_cast<float>(

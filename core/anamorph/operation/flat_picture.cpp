@@ -8,10 +8,8 @@ namespace anamorph {
 namespace {
 
 Picture flat_picture(const FlatRequest& request, FlatMap map) {
-    Picture picture;
-    picture.maps = {{std::move(map.blocks), {{Border(request.source, request.wrap)}}}};
-    picture.filter = request.filter;
-    picture.output = request.output;
+    Picture picture = picture_through(std::move(map.blocks), Border(request.source, request.wrap),
+                                      request.filter, request.output);
     picture.says = std::move(map.says);
     return picture;
 }

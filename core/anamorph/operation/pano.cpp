@@ -269,10 +269,8 @@ namespace {
 /// A panorama drawn by a bump unit.
 Picture bumped_picture(const ReprojectRequest& request) {
     const auto plan = std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine);
-    Picture picture;
-    picture.maps = {{plan, {{Border(request.source.chart, request.options.wrap)}}}};
-    picture.filter = request.options.filter;
-    picture.output = request.options.output;
+    Picture picture = picture_through(plan, Border(request.source.chart, request.options.wrap),
+                                      request.options.filter, request.options.output);
     picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
         return {{"anamorph:saturated_pixels", double(plan->saturated_pixels(parallel_for))},
                 {"anamorph:saturated_texels", plan->saturated_texels()}};

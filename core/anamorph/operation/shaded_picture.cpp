@@ -34,10 +34,8 @@ Border border_of(const WarpRequest& request) {
 /// A warp drawn by a pixel-shader unit.
 Picture warped_by_shader(const WarpMap& map, const WarpRequest& request) {
     const std::shared_ptr<const machine::ShadedWarp> warp = shaded_warp(map, request);
-    Picture picture;
-    picture.maps = {{warp, {{border_of(request)}}}};
-    picture.filter = request.options.filter;
-    picture.output = request.options.output;
+    Picture picture =
+        picture_through(warp, border_of(request), request.options.filter, request.options.output);
     if (request.options.folds)
         picture.value = [warp](double x, double y) { return warp->exact_plan().folds(x, y); };
     picture.says = [warp](const ParallelFor& parallel_for) -> Attributes {

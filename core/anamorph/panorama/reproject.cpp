@@ -17,12 +17,8 @@ PlanOptions plan_options(const ReprojectOptions& options) {
 }
 
 Picture reprojected_picture(const Panorama& map, const ReprojectOptions& options) {
-    Picture picture;
-    picture.maps = {
-        {std::make_shared<PanoramaPlan>(map, plan_options(options)), {{Border(map.source(), options.wrap)}}}};
-    picture.filter = options.filter;
-    picture.output = options.output;
-    return picture;
+    return picture_through(std::make_shared<PanoramaPlan>(map, plan_options(options)),
+                           Border(map.source(), options.wrap), options.filter, options.output);
 }
 
 }  // namespace anamorph
