@@ -205,9 +205,10 @@ std::map<std::string, double> reached_by(const std::vector<Assignment>& more) {
     source.facts.width = 400;
     source.facts.height = 200;
     const NoFiles files;
+    const auto solved = pano.read({values, {source}, {}, files})->picture(0, 0)->solve();
+    EXPECT_EQ(solved->reached_by_drawing(), values.text("scheme") == "hardware");
     std::map<std::string, double> numbers;
-    for (const Attribute& a :
-         pano.read({values, {source}, {}, files})->picture(0, 0)->solve()->reached(serial_for))
+    for (const Attribute& a : solved->reached(serial_for))
         numbers[a.name] =
             std::holds_alternative<int>(a.value) ? std::get<int>(a.value) : std::get<double>(a.value);
     return numbers;
@@ -223,6 +224,10 @@ TEST(BumpUnit, IsASchemeOfPanoramas) {
     EXPECT_GT(reached_by({{"machine", "{\"size\": 0}"}})["anamorph:max_error"], 5);
     auto looking_up = reached_by({{"pitch", "89.99"}, {"machine", "{\"arithmetic\": \"fixed16\"}"}});
     EXPECT_GT(looking_up["anamorph:saturated_pixels"], 100);
+    // Residuals of more than the texture that are not scaled do not fit texels up to 1.
+    EXPECT_EQ(standard["anamorph:saturated_texels"], 0);
+    auto wide = reached_by({{"pitch", "80"}, {"fov", "150"}, {"machine", "{\"scaled\": false}"}});
+    EXPECT_GT(wide["anamorph:saturated_texels"], 1000);
     EXPECT_GT(reached_by({{"scheme", "exact"}, {"machine", "{\"size\": 0}"}})["anamorph:exact_fraction"],
               0.99);
     EXPECT_THROW(reached_by({{"scheme", "exact"}, {"machine", "new"}}), Error);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "anamorph/operation/operation.h"
@@ -157,6 +158,20 @@ TEST(Operations, ExamplesAreDrawnTheSameWholeAndInParts) {
         for (const Attribute& reached : request.solve()->reached(serial_for))
             EXPECT_TRUE(reached.name.starts_with("anamorph:")) << reached.name;
     }
+}
+
+TEST(Operations, AMosaicSaysItsDistortionWhereTheNearestThingIsKnown) {
+    // Seen from half a radius off the centre, in that direction, what is r from the centre has 1 - 0.5 / r for the 1 - 0.5 / 4 of the
+    // depth: it is off most at the nearest distance, 1.2, or infinitely far.
+    const auto said = [](const std::vector<Assignment>& more) {
+        std::optional<double> value;
+        for (const Attribute& a :
+             ExamplePictures(*find_operation("mosaic"), more)->picture(0, 0)->solve()->reached(serial_for))
+            if (a.name == "anamorph:vertical_distortion") value = std::get<double>(a.value);
+        return value;
+    };
+    EXPECT_NEAR(said({{"nearest", "1.2"}}).value_or(0), 1.0 / 3, 1e-3);
+    EXPECT_NEAR(said({}).value_or(0), 1.0 / 7, 1e-3);
 }
 
 TEST(Operations, LevelsEndWithOnePixelOrOneFace) {
