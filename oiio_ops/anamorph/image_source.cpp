@@ -181,17 +181,42 @@ Frame frame_of(const ImageSpec& spec) {
     return {spec.full_width, spec.full_height, {left, top, left + spec.width, top + spec.height}};
 }
 
+SourceLevel Frame::level() const {
+    return {
+        {width, height},
+        {std::min(0, data.x0), std::min(0, data.y0), std::max(width, data.x1), std::max(height, data.y1)}};
+}
+
 int unassociated_alpha_of(const ImageSpec& spec) {
     return spec.get_int_attribute("oiio:UnassociatedAlpha") ? spec.alpha_channel : -1;
+}
+
+void check_windows(const ImageSpec& spec, const std::string& image) {
+    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1)
+        throw Error(image + " has no pixels");
+    const auto pixels = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height) + " pixels";
+    };
+    constexpr int kMostSide = 1 << 24;
+    if (spec.full_width > kMostSide || spec.full_height > kMostSide)
+        throw Error(image + " has " + pixels(spec.full_width, spec.full_height) + ": must have " + "1x1 to " +
+                    pixels(kMostSide, kMostSide));
+    const auto is_near = [](std::int64_t display, std::int64_t data, int size) {
+        return data - display >= -kMostSide && data + size - display <= kMostSide;
+    };
+    if (!is_near(spec.full_x, spec.x, spec.width) || !is_near(spec.full_y, spec.y, spec.height))
+        throw Error(image + " has a data window of " + pixels(spec.width, spec.height) + " at " +
+                    std::to_string(spec.x) + "," + std::to_string(spec.y) + ": must lie within " +
+                    std::to_string(kMostSide) + " pixels of the display window's corner, " +
+                    std::to_string(spec.full_x) + "," + std::to_string(spec.full_y));
 }
 
 void check_source(const ImageSpec& spec, const std::string& name) {
     const std::string image = "source \"" + printable(name) + "\"";
     if (spec.deep) throw Error(image + " is deep: must be a flat image");
     if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: must be a flat image");
-    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
-        spec.nchannels < 1)
-        throw Error(image + " has no pixels");
+    if (spec.nchannels < 1) throw Error(image + " has no pixels");
+    check_windows(spec, image);
     const Frame frame = frame_of(spec);
     constexpr int kMostSide = 1 << 24;
     if (frame.width > kMostSide || frame.height > kMostSide)
@@ -273,11 +298,6 @@ void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::st
         m_levels.push_back(next);
     }
     why_not();  // a level that is not there is no error
-}
-
-Size CacheSource::size(int level) const noexcept {
-    const Frame& f = m_levels[static_cast<std::size_t>(level)].frame;
-    return {f.width, f.height};
 }
 
 std::vector<ImageSpec> CacheSource::specs() const {

@@ -2,7 +2,8 @@
 // OpenImageIO's images as sources: an ImageBuf, a file behind an ImageCache, either in a working colour
 // space.
 //
-// The image of a source is the display window: pixels outside the data window are 0 (black, transparent).
+// The image of a source is the display window: pixels outside the data window are 0 (black, transparent), those of a data
+// window that goes beyond it stand around it.
 // Pixel types other than uint8, uint16, half and float are read as float, which loses digits of some; a picture whose
 // pixels are moved only, and never computed with, can have them as they are stored.
 #pragma once
@@ -45,11 +46,17 @@ bool loses_values(const OIIO::ImageSpec& spec);
 struct Frame {
     int width = 0, height = 0;  ///< of the panorama
     Box data;                   ///< relative to the panorama's corner
+
+    /// The panorama and the data window.
+    SourceLevel level() const;
 };
 Frame frame_of(const OIIO::ImageSpec& spec);
 
 /// The channel by which a picture's colour is not yet multiplied, or -1.
 int unassociated_alpha_of(const OIIO::ImageSpec& spec);
+
+/// Throws Error unless both windows of an image have pixels and lie within 2^24 of each other. `image`: what messages call it.
+void check_windows(const OIIO::ImageSpec& spec, const std::string& image);
 
 /// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels that are not square.
 void check_source(const OIIO::ImageSpec& spec, const std::string& name);
@@ -85,7 +92,8 @@ class CacheSource final : public Source {
     int channels() const noexcept override { return m_channels; }
     int unassociated_alpha() const noexcept override { return m_alpha; }
     int levels() const noexcept override { return static_cast<int>(m_levels.size()); }
-    Size size(int level) const noexcept override;
+    Size size(int level) const noexcept override { return frame(level).level().size; }
+    Box extent(int level) const noexcept override { return frame(level).level().extent; }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int level) const noexcept override;
@@ -107,6 +115,7 @@ class CacheSource final : public Source {
     };
     CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
                 int first_level);
+    const Frame& frame(int level) const noexcept { return m_levels[static_cast<std::size_t>(level)].frame; }
     /// `why_not`: the reason where there is no level 0.
     void read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not);
     bool read_rows(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
@@ -137,7 +146,8 @@ class BufferSource final : public Source {
     int channels() const noexcept override { return m_channels; }
     int unassociated_alpha() const noexcept override { return m_alpha; }
     int levels() const noexcept override { return 1; }
-    Size size(int) const noexcept override { return {m_frame.width, m_frame.height}; }
+    Size size(int) const noexcept override { return m_frame.level().size; }
+    Box extent(int) const noexcept override { return m_frame.level().extent; }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int) const noexcept override { return m_view ? &*m_view : nullptr; }
@@ -184,6 +194,7 @@ class WorkingSource final : public Source {
         return 1;
     }  // an average before the conversion is not one after it
     Size size(int level) const noexcept override { return m_base.size(level); }
+    Box extent(int level) const noexcept override { return m_base.extent(level); }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
 

@@ -152,6 +152,8 @@ void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
 SourceFacts facts_of(const ImageSpec& spec) {
     const Frame frame = frame_of(spec);
     SourceFacts facts{frame.width, frame.height, {}, {}, {}};
+    if (const SourceLevel level = frame.level(); !(level.extent == SourceLevel(level.size).extent))
+        facts.overscan = level.extent;
     read_focal_length(spec, facts);
     const auto says = [&](const char* attribute, Projection projection) {
         facts.projection = projection;
@@ -236,10 +238,15 @@ bool moves_stored(const PictureRequest& picture, const std::vector<ImageSpec>& s
 
 ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, bool stored) {
     ImageSpec spec = source ? *source : ImageSpec();
-    spec.x = spec.y = spec.z = 0;
-    spec.full_x = spec.full_y = spec.full_z = 0;
-    spec.width = spec.full_width = picture.size.width;
-    spec.height = spec.full_height = picture.size.height;
+    const Box display = picture.shown();
+    spec.x = -display.x0;
+    spec.y = -display.y0;
+    spec.width = picture.size.width;
+    spec.height = picture.size.height;
+    spec.full_x = spec.full_y = 0;
+    spec.full_width = display.width();
+    spec.full_height = display.height();
+    spec.z = spec.full_z = 0;
     spec.depth = spec.full_depth = 1;
     spec.tile_width = spec.tile_height = 0;
     spec.tile_depth = 1;

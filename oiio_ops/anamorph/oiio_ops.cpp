@@ -129,9 +129,10 @@ bool prepare(ImageBuf& dst, const ImageSpec& picture, ROI& roi) {
     return unwritten;
 }
 
-/// The part of the picture that `roi` of dst shows.
-Box box_of(const ROI& roi, const ImageSpec& dst) {
-    return {roi.xbegin - dst.full_x, roi.ybegin - dst.full_y, roi.xend - dst.full_x, roi.yend - dst.full_y};
+/// The part of the picture that `roi` of dst shows, whose display window is the picture's, as `picture` has it.
+Box box_of(const ROI& roi, const ImageSpec& dst, const ImageSpec& picture) {
+    const int x = dst.full_x + picture.x - picture.full_x, y = dst.full_y + picture.y - picture.full_y;
+    return {roi.xbegin - x, roi.ybegin - y, roi.xend - x, roi.yend - y};
 }
 
 /// The pixels that are drawn: their format, and as what the core sees them.
@@ -143,7 +144,7 @@ struct Drawn {
 void fill(ImageBuf& dst, const SolvedPicture& picture, const SourceStacks& stacks, const ImageSpec& drawn,
           bool stored, const ROI& roi, const ParallelFor& parallel_for) {
     const ImageSpec& spec = dst.spec();
-    const Box box = box_of(roi, spec);
+    const Box box = box_of(roi, spec, drawn);
     const bool all_channels = roi.chbegin == 0 && roi.chend == drawn.nchannels && spec.nchannels == roi.chend;
     const Drawn own =
         stored ? Drawn{drawn.format, stored_pixels(drawn)}
@@ -166,7 +167,7 @@ void fill(ImageBuf& dst, const SolvedPicture& picture, const SourceStacks& stack
         ROI rows = roi;
         rows.ybegin = y;
         rows.yend = std::min(y + kRows, roi.yend);
-        const Box part = box_of(rows, spec);
+        const Box part = box_of(rows, spec, drawn);
         pixels.resize(static_cast<std::size_t>(std::int64_t{part.width()} * part.height() * pixel));
         draw_picture(
             picture, stacks, part,

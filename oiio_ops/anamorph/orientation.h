@@ -49,6 +49,9 @@ class UprightSource final : public Source {
     int unassociated_alpha() const noexcept override { return m_base.unassociated_alpha(); }
     int levels() const noexcept override { return m_base.levels(); }
     Size size(int level) const noexcept override { return m_order.upright_size(m_base.size(level)); }
+    Box extent(int level) const noexcept override {
+        return m_order.upright_box(m_base.extent(level), m_base.size(level));
+    }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
 

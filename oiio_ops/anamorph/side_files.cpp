@@ -32,20 +32,21 @@ class OiioImage final : public SideImage {
         m_input->threads(1);
         const OIIO::ImageSpec& spec = m_input->spec();
         if (spec.deep || spec.depth > 1) throw Error(m_what + " is deep or a volume: must be a flat image");
-        // Beyond its data there is nothing that a map or a surface could go on with.
-        if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-            spec.height != spec.full_height)
-            throw Error(
-                m_what +
-                " has pixels in a part of its display window only, or beyond it: must have them in all of "
-                "it and no more (oiiotool --croptofull)");
+        check_windows(spec, m_what);
     }
 
     Size size() const override {
         const OIIO::ImageSpec& spec = m_input->spec();
         return StoredOrder(spec).upright_size({spec.width, spec.height});
     }
+    Box display() const override {
+        const OIIO::ImageSpec& spec = m_input->spec();
+        const int x = spec.full_x - spec.x, y = spec.full_y - spec.y;
+        return StoredOrder(spec).upright_box({x, y, x + spec.full_width, y + spec.full_height},
+                                             {spec.width, spec.height});
+    }
     int channels() const override { return m_input->spec().nchannels; }
+    int alpha() const override { return m_input->spec().alpha_channel; }
 
     std::vector<float> read(int count) override {
         const OIIO::ImageSpec& spec = m_input->spec();

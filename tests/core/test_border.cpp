@@ -106,9 +106,9 @@ TEST(Border, RunsAreWhatResolvesTexelByTexel) {
             }
     // A row of a panorama is one run on either side of the seam.
     const Chart chart(Projection::equirectangular, 16, 8);
-    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(-5, 3, 0, {16, 8}, 100).count, 5);
-    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(0, 3, 0, {16, 8}, 100).count, 16);
-    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(0, -1, 0, {16, 8}, 100).count, 8);
+    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(-5, 3, 0, Size{16, 8}, 100).count, 5);
+    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(0, 3, 0, Size{16, 8}, 100).count, 16);
+    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(0, -1, 0, Size{16, 8}, 100).count, 8);
 }
 
 TEST(Border, OddAndTinyLevelsAreSafe) {
@@ -155,7 +155,7 @@ TEST(Border, PlainModesStayOnTheirFace) {
     EXPECT_EQ(Border(chart, Wrap::mirror).resolve(7, 17, 4, level), (Texel{8, 14}));
     EXPECT_EQ(Border(chart, Wrap::clamp).resolve(-100, 17, 4, level), (Texel{8, 15}));
     EXPECT_EQ(Border(chart, Wrap::black).resolve(16, 9, 4, level), kNone);
-    EXPECT_EQ(Border(chart, Wrap::periodic).interior(4, {12, 8}), (Box{4, 4, 8, 8}));
+    EXPECT_EQ(Border(chart, Wrap::periodic).interior(4, Size{12, 8}), (Box{4, 4, 8, 8}));
 }
 
 TEST(Border, TheQuartersOfAnOctahedronHaveNoEdgesWhereTheyMeet) {
@@ -180,10 +180,10 @@ TEST(Border, BesideALensOfTwoIsNotTheOther) {
     const Border border(chart, Wrap::automatic);
     for (int piece = 0; piece < 2; ++piece)
         for (const int x : {20 * piece - 1, 20 * piece + 20})
-            EXPECT_EQ(border.resolve(x, 9, piece, {40, 20}), kNone) << piece << ' ' << x;
+            EXPECT_EQ(border.resolve(x, 9, piece, Size{40, 20}), kNone) << piece << ' ' << x;
     // With more than 180 degrees one goes on in the other.
     const Border wide(Chart(Projection::dual_fisheye, 40, 20, 200), Wrap::automatic);
-    EXPECT_FALSE(wide.resolve(20, 9, 0, {40, 20}).none);
+    EXPECT_FALSE(wide.resolve(20, 9, 0, Size{40, 20}).none);
 }
 
 TEST(Border, PanoramasCloseAndGoOverThePoles) {
@@ -200,7 +200,7 @@ TEST(Border, PanoramasCloseAndGoOverThePoles) {
     // All the way around.
     EXPECT_EQ(border.resolve(3, 16 + 2, 0, level), (Texel{3, 2}));
     // Half the size.
-    EXPECT_EQ(border.resolve(-1, -1, 0, {8, 4}), (Texel{3, 0}));
+    EXPECT_EQ(border.resolve(-1, -1, 0, Size{8, 4}), (Texel{3, 0}));
 }
 
 TEST(Border, BetweenCentresTheLastTexelRepeatsTheFirst) {
@@ -215,8 +215,8 @@ TEST(Border, BetweenCentresTheLastTexelRepeatsTheFirst) {
     EXPECT_EQ(border.resolve(2, -1, 0, level), (Texel{9, 1}));
     EXPECT_EQ(border.resolve(2, 8, 0, level), (Texel{9, 6}));
     // On a coarse level the overlap is a small part of a texel.
-    EXPECT_EQ(border.resolve(4, 1, 0, {4, 2}), (Texel{0, 1}));
-    EXPECT_EQ(border.resolve(0, -1, 0, {4, 2}), (Texel{2, 0}));
+    EXPECT_EQ(border.resolve(4, 1, 0, Size{4, 2}), (Texel{0, 1}));
+    EXPECT_EQ(border.resolve(0, -1, 0, Size{4, 2}), (Texel{2, 0}));
 }
 
 TEST(Border, WhatDoesNotCloseIsBlackBeyond) {
@@ -231,7 +231,7 @@ TEST(Border, WhatDoesNotCloseIsBlackBeyond) {
         EXPECT_EQ(Border(closed, Wrap::automatic).resolve(3, 8, 0, level), kNone);
     }
     const Chart strip(Projection::equirectangular, 16, 5);
-    EXPECT_EQ(Border(strip, Wrap::automatic).resolve(3, 5, 0, {16, 5}), kNone);
+    EXPECT_EQ(Border(strip, Wrap::automatic).resolve(3, 5, 0, Size{16, 5}), kNone);
 }
 
 double angle_between(const Ray<double>& a, const Ray<double>& b) {

@@ -139,5 +139,29 @@ TEST(MeshFile, TakesEveryNthPixelOfAnStMap) {
     EXPECT_THROW(mesh_from_stmap(uv.data(), 1, kHeight, 3, 3, 1, "st.exr"), Error);
 }
 
+TEST(MeshFile, PixelsOfAnStMapThatAreNoNumbersAreHoles) {
+    std::vector<float> uv(2 * 9 * 5, 0.25f);
+    uv[7] = -3;
+    uv[0] = NAN;
+    uv[21] = INFINITY;
+    uv[40] = -INFINITY;
+    uv[41] = NAN;
+    const WarpMap map = mesh_from_stmap(uv, 9, 5, "st.exr");
+    const StSamples& samples = *std::get<ControlMesh>(map.shape).samples;
+    EXPECT_EQ(samples.holes, 3);
+    EXPECT_EQ(samples.most, 3);
+    for (std::size_t i = 0; i < uv.size(); i += 2) {
+        const bool hole = i == 0 || i == 20 || i == 40;
+        EXPECT_EQ(std::isnan(samples.uv[i]), hole) << i;
+        EXPECT_EQ(std::isnan(samples.uv[i + 1]), hole) << i;
+    }
+    try {
+        mesh_from_stmap(std::vector<float>(2 * 9 * 5, NAN), 9, 5, "st.exr");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("st.exr has no pixel that comes from anywhere"));
+    }
+}
+
 }  // namespace
 }  // namespace anamorph

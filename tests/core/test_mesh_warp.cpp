@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mesh warps as they are drawn: the same bits however they are cut, and what the other outputs say.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <thread>
 
 #include "anamorph/image/pyramid.h"
+#include "anamorph/mesh/mesh_file.h"
 #include "anamorph/mesh/mesh_warp.h"
 #include "mesh_cases.h"
 
@@ -109,6 +111,106 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
         options.folds = output == Output::color;
         for (const WarpMap* map : {&pull, &push, &points, &dense})
             expect_same_bits(*map, options, target, texels);
+    }
+}
+
+/// An ST-map that turns and shrinks, with a wave.
+std::vector<float> smooth_stmap(const Size& size) {
+    std::vector<float> uv;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            const double s = (x + 0.5) / size.width, t = (y + 0.5) / size.height;
+            uv.push_back(static_cast<float>(0.1 + 0.7 * s + 0.15 * t + 0.02 * std::sin(9 * t)));
+            uv.push_back(static_cast<float>(0.05 - 0.1 * s + 0.8 * t + 0.02 * std::cos(7 * s)));
+        }
+    return uv;
+}
+
+TEST(MeshWarp, HolesOfAnStMapShowNothingAndNothingElseChanges) {
+    test::Random random(11);
+    const Size target{200, 140}, size{230, 170};
+    const Picture texels = noise(random, size.width, size.height);
+    const std::vector<float> full = smooth_stmap(target);
+    std::vector<float> uv = full;
+    std::vector<bool> hole(static_cast<std::size_t>(target.width * target.height));
+    const auto dig = [&](int x, int y) {
+        const auto i = static_cast<std::size_t>(y * target.width + x);
+        hole[i] = true;
+        uv[2 * i + random.whole(0, 1)] = NAN;
+    };
+    for (int i = 0; i < 60; ++i) dig(random.whole(0, target.width - 1), random.whole(0, target.height - 1));
+    for (int y = 64; y < 100; ++y)
+        for (int x = 64; x < 130; ++x) dig(x, y);
+    dig(0, 0);
+    const WarpMap map = mesh_from_stmap(uv, target.width, target.height, "holes"),
+                  whole = mesh_from_stmap(full, target.width, target.height, "full");
+    const auto far_from_holes = [&](int x, int y) {
+        for (int j = std::max(0, y - 3); j <= std::min(target.height - 1, y + 3); ++j)
+            for (int i = std::max(0, x - 3); i <= std::min(target.width - 1, x + 3); ++i)
+                if (hole[static_cast<std::size_t>(j * target.width + i)]) return false;
+        return true;
+    };
+    const MemorySource source(texels.source());
+    const auto draw = [&](const WarpMap& of, const MeshWarpOptions& options) {
+        const auto warp = warped_picture(of, size, target, options);
+        Picture picture(target.width, target.height, warp.channels(&source));
+        EXPECT_TRUE(warp.draw(&source, {0, 0, target.width, target.height}, picture.view()));
+        return picture;
+    };
+    MeshWarpOptions options;
+    for (const double tol : {0.0, 0.01})
+        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias}) {
+            SCOPED_TRACE(::testing::Message() << tol << " " << static_cast<int>(filter));
+            options.tol = tol;
+            options.filter = filter;
+            const Picture with = draw(map, options), without = draw(whole, options);
+            for (int y = 0; y < target.height; ++y)
+                for (int x = 0; x < target.width; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        const float value = with.at(x, y, c);
+                        if (hole[static_cast<std::size_t>(y * target.width + x)]) {
+                            ASSERT_EQ(value, 0.0f) << x << " " << y;
+                            continue;
+                        }
+                        // Beside a hole a footprint has other neighbours to go by, and near one each pixel has its own.
+                        const double most = filter == Filter::nearest     ? 0
+                                            : filter != Filter::antialias ? 1e-4
+                                            : far_from_holes(x, y)        ? 0.1
+                                                                          : 0.35;
+                        ASSERT_NEAR(value, without.at(x, y, c), most) << x << " " << y;
+                    }
+            expect_same_bits(map, options, target, texels);
+        }
+    options.output = Output::stmap;
+    const Picture points = draw(map, options);
+    options.output = Output::stmap_up;
+    const Picture up = draw(map, options);
+    for (int y = 0; y < target.height; ++y)
+        for (int x = 0; x < target.width; ++x) {
+            const bool is_hole = hole[static_cast<std::size_t>(y * target.width + x)];
+            const std::size_t i = 2 * static_cast<std::size_t>(y * target.width + x);
+            ASSERT_NEAR(points.at(x, y, 0), is_hole ? -1 : full[i], 1e-4);
+            ASSERT_NEAR(points.at(x, y, 1), is_hole ? -1 : full[i + 1], 1e-4);
+            ASSERT_EQ(up.at(x, y, 0), points.at(x, y, 0));
+            ASSERT_NEAR(up.at(x, y, 1), is_hole ? -1 : 1 - full[i + 1], 1e-4);
+        }
+    for (const Output output : {Output::stmap, Output::error, Output::bound}) {
+        options.output = output;
+        expect_same_bits(map, options, target, texels);
+    }
+    EXPECT_GE(folded_fraction(warped_picture(map, size, target, options)), 0);
+    // Between pixels nothing is known of holes.
+    for (const auto& [wanted, direction] :
+         {std::pair{Size{100, 70}, Direction::pull}, std::pair{target, Direction::push}}) {
+        WarpMap other = map;
+        std::get<ControlMesh>(other.shape).direction = direction;
+        try {
+            warped_picture(other, size, wanted, options);
+            FAIL();
+        } catch (const Error& error) {
+            EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr("holes has 2"),
+                                                       ::testing::HasSubstr("in its own size, 200x140")));
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "anamorph/oiio_ops.h"
 #include "host.h"
 
 namespace anamorph {
@@ -77,11 +78,15 @@ TEST_F(LensRecipe, SizeAllKeepsAllAndComesBack) {
     const std::string lens = "lens=brown:k1=-0.25,k2=0.06,p1=0.002&fov=70&filter=bilinear&wrap=clamp";
     const Ran there = run("oiiotool 'ramp.exr.lens?" + lens + "&size=all' -o flat.exr");
     ASSERT_EQ(there.status, 0) << there.text;
+    // The plate's format, with all that is left of it around.
     const Pixels flat = read_pixels("flat.exr");
     EXPECT_GT(flat.spec.width, kWidth);
-    EXPECT_EQ(flat.spec.width % 2, 0);
+    EXPECT_EQ(flat.spec.width, kWidth - 2 * flat.spec.x);
     EXPECT_GT(flat.spec.height, kHeight);
-    const Ran back = run("oiiotool 'flat.exr.lens?mode=distort&size=192x128&" + lens + "' -o back.exr");
+    EXPECT_EQ(flat.spec.height, kHeight - 2 * flat.spec.y);
+    EXPECT_EQ(OIIO::ROI(flat.spec.full_x, flat.spec.full_width, flat.spec.full_y, flat.spec.full_height),
+              OIIO::ROI(0, kWidth, 0, kHeight));
+    const Ran back = run("oiiotool 'flat.exr.lens?mode=distort&" + lens + "' -o back.exr");
     ASSERT_EQ(back.status, 0) << back.text;
     // What lies between pixels of the flat picture is interpolated, twice; along the edge, beyond the source too.
     const std::vector<float> a = read_floats("ramp.exr"), b = read_floats("back.exr");
@@ -93,6 +98,80 @@ TEST_F(LensRecipe, SizeAllKeepsAllAndComesBack) {
                 worst = std::max(worst, std::fabs(double{a[at]} - b[at]));
             }
     EXPECT_LT(worst, 0.05);
+}
+
+// A plate with pixels beyond its format, as stock oiiotool shows it through an ST-map.
+TEST_F(LensRecipe, PixelsBeyondTheFormatAreSeen) {
+    OIIO::ImageSpec spec(240, 140, 3, OIIO::TypeFloat);
+    spec.x = spec.y = -20;
+    spec.full_width = 200;
+    spec.full_height = 100;
+    for (const int orientation : {1, 6}) {
+        SCOPED_TRACE(orientation);
+        OIIO::ImageBuf plate(spec);
+        for (int y = -20; y < 120; ++y)
+            for (int x = -20; x < 220; ++x) {
+                const float value[] = {static_cast<float>(x) + 100.5f, static_cast<float>(y) + 100.5f, 1};
+                plate.setpixel(x, y, value);
+            }
+        plate.specmod().attribute("Orientation", orientation);
+        write_image(plate, "over.exr");
+        const bool turned = orientation == 6;
+        const int width = turned ? 100 : 200, height = turned ? 200 : 100;
+        for (const char* filter : {"nearest", "bilinear", "antialias", "summed_area"}) {
+            SCOPED_TRACE(filter);
+            const std::string recipe = std::string("over.exr.lens?lens=3de4:k1=-0.1&filter=") + filter;
+            const std::vector<float> seen = read_floats(recipe), uv = read_floats(recipe + "&output=stmap");
+            ASSERT_EQ(seen.size(), static_cast<std::size_t>(3 * width * height));
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const auto i = static_cast<std::size_t>(y * width + x);
+                    const double u = uv[2 * i] * double(width), v = uv[2 * i + 1] * double(height);
+                    // Orientation 6: stored columns are rows from the top, stored rows are columns from the right.
+                    const double across = turned ? v : u, down = turned ? width - u : v;
+                    ASSERT_EQ(seen[3 * i + 2], 1) << x << " " << y;
+                    ASSERT_NEAR(seen[3 * i], across + 100, 0.51) << x << " " << y;
+                    ASSERT_NEAR(seen[3 * i + 1], down + 100, 0.51) << x << " " << y;
+                }
+            const std::vector<float> all = read_floats(recipe + "&size=all");
+            const Pixels window = read_pixels(recipe + "&size=all");
+            EXPECT_LE(window.spec.x, 0);
+            EXPECT_EQ(window.spec.full_width, width);
+            // The same picture where both are.
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const auto i = static_cast<std::size_t>(3 * (y * width + x)),
+                               k = static_cast<std::size_t>(
+                                   3 * ((y - window.spec.y) * window.spec.width + x - window.spec.x));
+                    ASSERT_NEAR(all[k], seen[i], 0.51);
+                }
+        }
+    }
+    // A recipe that reads one with windows, functions on images, and stock programs.
+    const std::vector<float> twice =
+        read_floats("over.exr.lens?lens=3de4:k1=-0.1&size=all.lens?lens=3de4:k1=0.02");
+    for (std::size_t i = 2; i < twice.size(); i += 3) ASSERT_EQ(twice[i], 1) << i;
+}
+
+TEST_F(LensRecipe, FunctionsDrawWindowsToo) {
+    const OIIO::ImageBuf plate("ramp.exr");
+    const auto lens = options({{"lens", "3de4:k1=-0.2"}, {"size", "all"}, {"mode", "distort"}});
+    const OIIO::ImageBuf all = apply("lens", {&plate}, lens);
+    ASSERT_FALSE(all.has_error()) << all.geterror();
+    const OIIO::ImageSpec& spec = all.spec();
+    EXPECT_LT(spec.x, 0);
+    EXPECT_EQ(spec.x + spec.width, kWidth - spec.x);
+    EXPECT_EQ(spec.full_width, kWidth);
+    EXPECT_EQ(all.getchannel(kWidth / 2, kHeight / 2, 0, 2), 1);
+    // A part of it.
+    OIIO::ImageBuf part;
+    const OIIO::ROI roi(spec.x, spec.x + 40, spec.y, 20);
+    ASSERT_TRUE(apply(part, "lens", {&plate}, lens, roi)) << part.geterror();
+    for (int y = roi.ybegin; y < roi.yend; ++y)
+        for (int x = roi.xbegin; x < roi.xend; ++x)
+            for (int c = 0; c < 3; ++c) ASSERT_EQ(part.getchannel(x, y, 0, c), all.getchannel(x, y, 0, c));
+    // The recipe is the function.
+    EXPECT_EQ(read_pixels("ramp.exr.lens?lens=3de4:k1=-0.2&size=all&mode=distort").bytes, bytes(all));
 }
 
 TEST_F(LensRecipe, TheImageSaysItsLens) {

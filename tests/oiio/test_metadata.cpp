@@ -199,15 +199,34 @@ TEST_P(Orientations, SourcesAreReadUpright) {
     }
 }
 
-/// What a map says of some pixels is not taken for what it says of others.
-TEST_F(Metadata, SideImagesMustFillTheirWindows) {
-    ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=grid.json&output=stmap&size=20x30' -o st.exr "
-                  "--crop 10x12+4+5 -o part.exr")
-                  .status,
-              0);
-    EXPECT_EQ(spec_of("city.exr.warp?mesh=st.exr").width, 20);
-    EXPECT_THAT(open_error("city.exr.warp?mesh=part.exr"),
-                testing::HasSubstr("image \"part.exr\" has pixels in a part"));
+/// What a surface's positions are is asked of all that they show, and of no more.
+TEST_F(Metadata, PositionsAndHeightsAreThoseOfTheDisplayWindow) {
+    write_panorama("heights.exr", 60, 40);
+    ASSERT_EQ(
+        run("oiiotool heights.exr --crop 20x12+4+5 -o part.exr heights.exr --fullsize 20x12+4+5 -o more.exr "
+            "heights.exr --cut 20x12+4+5 -o cut.exr")
+            .status,
+        0);
+    const std::string drape = "city.exr.drape?camera=0.1,0.2,2&";
+    for (const std::string key : {"height=", "positions="}) {
+        const std::string surface = key[0] == 'p' ? drape + "surface=positions&" + key : drape + key;
+        EXPECT_THAT(open_error(surface + "part.exr"), HasSubstr("\"part.exr\" has pixels in a part")) << key;
+        EXPECT_TRUE(read_pixels(surface + "more.exr") == read_pixels(surface + "cut.exr")) << key;
+        EXPECT_FALSE(read_pixels(surface + "more.exr") == read_pixels(surface + "heights.exr")) << key;
+    }
+}
+
+TEST_F(Metadata, WindowsThatLieTooFarApartAreRefused) {
+    ImageSpec spec(8, 8, 3, OIIO::TypeFloat);
+    spec.x = 1 << 28;
+    spec.full_width = spec.full_height = 64;
+    ImageBuf far(spec);
+    OIIO::ImageBufAlgo::zero(far);
+    const std::string reason = "a data window of 8x8 pixels at 268435456,0: must lie within 16777216 pixels";
+    EXPECT_THAT(mesh_warp(far, options({{"mesh", "grid.json"}})).geterror(), HasSubstr(reason));
+    write_image(far, "far.exr");
+    EXPECT_THAT(open_error("far.exr.warp?mesh=grid.json"), HasSubstr(reason));
+    EXPECT_THAT(open_error("city.exr.warp?mesh=far.exr"), HasSubstr(reason));
 }
 
 TEST_P(Orientations, SoAreDataWindowsAndStMaps) {

@@ -161,6 +161,90 @@ TEST_F(Warp, AnStMapSaysHowLargeThePictureIs) {
     EXPECT_EQ(size_of("city.exr.warp?mesh=grid.json"), std::pair(192, 128));
 }
 
+// An ST-map with windows draws a picture with the same ones.
+TEST_F(Warp, AnStMapHasWindows) {
+    ASSERT_EQ(
+        run("oiiotool 'city.exr.lens?lens=3de4:k1=-0.15&output=stmap&size=all&mode=distort' -o more.exr "
+            "'city.exr.lens?lens=3de4:k1=-0.15&output=stmap' -o st.exr --cut 100x60+40+30 -o none.exr")
+            .status,
+        0);
+    const ImageSpec more = read("more.exr").spec();
+    ASSERT_LT(more.x, 0);
+    const OIIO::ImageBuf drawn = read("city.exr.warp?mesh=more.exr"),
+                         lens = read("city.exr.lens?lens=3de4:k1=-0.15&size=all&mode=distort");
+    EXPECT_EQ(drawn.roi(), lens.roi());
+    EXPECT_EQ(drawn.roi_full(), lens.roi_full());
+    EXPECT_LT(OIIO::ImageBufAlgo::compare(drawn, lens, 1e-3f, 1e-3f).maxerror, 1e-3);
+    // A cropped one.
+    OIIO::ImageBuf crop = OIIO::ImageBufAlgo::crop(read("st.exr"), OIIO::ROI(40, 140, 30, 90));
+    write_image(crop, "part.exr");
+    const OIIO::ImageBuf part = read("city.exr.warp?mesh=part.exr"),
+                         whole = read("city.exr.warp?mesh=st.exr");
+    EXPECT_EQ(part.roi(), OIIO::ROI(40, 140, 30, 90, 0, 1, 0, 3));
+    EXPECT_EQ(part.roi_full(), whole.roi_full());
+    for (int y = 32; y < 88; ++y)
+        for (int x = 42; x < 138; ++x)
+            ASSERT_NEAR(part.getchannel(x, y, 0, 1), whole.getchannel(x, y, 0, 1), 5e-3);
+    EXPECT_THAT(open_error("city.exr.warp?mesh=part.exr&direction=push"),
+                HasSubstr("direction=push: must be pull"));
+    EXPECT_THAT(open_error("city.exr.warp?mesh=part.exr&amount=0.5"), HasSubstr("amount=0.5: must be 1"));
+    EXPECT_THAT(open_error("city.exr.warp?mesh=part.exr&size=64"),
+                HasSubstr("must be 192x128 of an ST-map of 100x60"));
+    EXPECT_EQ(read_pixels("city.exr.warp?mesh=part.exr&size=192x128").bytes,
+              read_pixels("city.exr.warp?mesh=part.exr").bytes);
+}
+
+TEST_F(Warp, VMayGoUp) {
+    ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=grid.json&output=stmap' -o down.exr "
+                  "'city.exr.warp?mesh=grid.json&output=stmap&flip_v=1' -o up.exr")
+                  .status,
+              0);
+    const std::vector<float> down = read_floats("down.exr"), up = read_floats("up.exr");
+    for (std::size_t i = 0; i < down.size(); i += 2) {
+        ASSERT_EQ(up[i], down[i]);
+        ASSERT_NEAR(up[i + 1], 1 - down[i + 1], 1e-6);
+    }
+    EXPECT_LT(largest_difference(read_floats("city.exr.warp?mesh=up.exr&flip_v=1"),
+                                 read_floats("city.exr.warp?mesh=down.exr")),
+              1e-4);
+    // Read and written in one.
+    EXPECT_LT(largest_difference(read_floats("city.exr.warp?mesh=up.exr&flip_v=1&output=stmap"), up), 1e-6);
+}
+
+TEST_F(Warp, PixelsOfAnStMapMayComeFromNowhere) {
+    OIIO::ImageBuf map = read("city.exr.warp?mesh=grid.json&output=stmap");
+    const OIIO::ImageBuf whole = read("city.exr.warp?mesh=grid.json");
+    ImageSpec spec(map.spec().width, map.spec().height, 4, OIIO::TypeFloat);
+    spec.alpha_channel = 3;
+    OIIO::ImageBuf holes(spec);
+    const auto is_hole = [](int x, int y) { return (x > 50 && x < 80 && y > 20 && y < 60) || x == 7 * y; };
+    for (int y = 0; y < spec.height; ++y)
+        for (int x = 0; x < spec.width; ++x) {
+            const bool nan = is_hole(x, y) && x % 2 == 0;
+            const float value[] = {nan ? NAN : map.getchannel(x, y, 0, 0), map.getchannel(x, y, 0, 1), 0.5f,
+                                   is_hole(x, y) && !nan ? 0.0f : 1.0f};
+            holes.setpixel(x, y, value);
+        }
+    write_image(holes, "holes.exr");
+    for (const char* filter : {"bilinear", "antialias"}) {
+        const OIIO::ImageBuf drawn = read(std::string("city.exr.warp?mesh=holes.exr&filter=") + filter),
+                             full = read(std::string("city.exr.warp?mesh=grid.json&filter=") + filter);
+        for (int y = 0; y < spec.height; ++y)
+            for (int x = 0; x < spec.width; ++x) {
+                const float value = drawn.getchannel(x, y, 0, 1);
+                if (is_hole(x, y)) {
+                    ASSERT_EQ(value, 0) << x << " " << y;
+                } else if (filter[0] == 'b') {
+                    ASSERT_NEAR(value, full.getchannel(x, y, 0, 1), 2e-3);
+                }
+            }
+    }
+    // Levels would have to know more.
+    EXPECT_EQ(open("city.exr.warp?mesh=holes.exr&mip=1")->spec(0, 1).format, OIIO::TypeUnknown);
+    EXPECT_THAT(open_error("city.exr.warp?mesh=holes.exr&size=96"), HasSubstr("in its own size, 192x128"));
+    EXPECT_THAT(open_error("city.exr.warp?mesh=holes.exr&step=3"), HasSubstr("must be finite numbers"));
+}
+
 TEST_F(Warp, FilesStandWhereTheRecipeStands) {
     const Pixels expected = read_pixels("city.exr.warp?mesh=grid.json");
     fs::create_directories("shots/meshes");

@@ -498,7 +498,7 @@ BlockReader::Got BlockReader::draw_scattered(const Filtering& f, const Block& bl
     if (averages(m_filter) || m_source.type() == PixelType::uint8) return Got::too_large;
     const int piece = m_exact.piece(0)[0], reach = support_of(f.kernel);
     const Size size = m_source.size(0);
-    Box box = m_border.interior(piece, size);
+    Box box = m_border.interior(piece, m_source.level(0));
     box.y0 = std::max(box.y0, static_cast<int>(std::floor(y.low)) - reach);
     box.y1 = std::min(box.y1, static_cast<int>(std::floor(y.high)) + reach + 1);
     // Behind an image's last row nothing may be read.

@@ -161,8 +161,8 @@ class RoundedEdge {
 
 Border::Border(const Chart& chart, Wrap wrap) : m_chart(chart), m_wrap(wrap) {}
 
-Box Border::interior(int piece, const Size& level) const noexcept {
-    if (m_wrap == Wrap::automatic && has_rounded_edge(m_chart)) return RoundedEdge(m_chart, level).middle();
+/// The rectangle of a level that a piece fills.
+Box Border::face(int piece, const Size& level) const noexcept {
     if (m_chart.pieces().size() == 1 || faces_of(m_chart.projection()).joined)
         return {0, 0, level.width, level.height};
     const Box& box = m_chart.pieces()[static_cast<std::size_t>(piece)].box;
@@ -177,22 +177,35 @@ Box Border::interior(int piece, const Size& level) const noexcept {
     return r;
 }
 
+Box Border::interior(int piece, const SourceLevel& level) const noexcept {
+    const bool is_round = has_rounded_edge(m_chart);
+    if (m_wrap == Wrap::automatic && is_round) return RoundedEdge(m_chart, level.size).middle();
+    const bool has_edges = m_chart.pieces().size() == 1 && !m_chart.closed() && !is_round;
+    return has_edges ? level.extent : face(piece, level.size);
+}
+
 int Border::turn(const Size& level) const noexcept {
     const bool closes = m_wrap == Wrap::automatic && m_chart.pieces().size() == 1 && m_chart.closed();
     return closes ? period_of(m_chart, level) : 0;
 }
 
-TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const Size& level,
+TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const SourceLevel& level,
                              int limit) const noexcept {
+    const Size& size = level.size;
     if (m_wrap == Wrap::automatic && has_rounded_edge(m_chart)) {
-        const TexelRun found = RoundedEdge(m_chart, level).resolve(x, y);
+        const TexelRun found = RoundedEdge(m_chart, size).resolve(x, y);
         return {found.first, std::min(found.count, limit)};
     }
-    const Box box = interior(piece, level);
+    const Box own = interior(piece, level);
+    if (own.y0 <= y && y < own.y1 && x < own.x1) {
+        if (x >= own.x0)
+            return {{static_cast<int>(x), static_cast<int>(y)},
+                    std::min(own.x1 - static_cast<int>(x), limit)};
+        if (x > std::int64_t{own.x0} - limit) limit = own.x0 - static_cast<int>(x);
+    }
+    const Box box = face(piece, size);
     const bool in_column = box.x0 <= x && x < box.x1, in_row = box.y0 <= y && y < box.y1;
     const auto run = [&](TexelRun r) { return TexelRun{r.first, std::min(r.count, limit)}; };
-    if (in_column && in_row)
-        return run({{static_cast<int>(x), static_cast<int>(y)}, box.x1 - static_cast<int>(x)});
     switch (m_wrap) {
         case Wrap::black:
             break;
@@ -208,15 +221,13 @@ TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const Si
             return {{mirrored(x, box.x0, box.x1), mirrored(y, box.y0, box.y1)}};
         case Wrap::automatic:
             if (m_chart.pieces().size() > 1)
-                return {across_face_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece,
-                                         level, *this)};
+                return {across_face_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece, size,
+                                         *this)};
             if (m_chart.closed() && (in_row || m_chart.reaches_poles()))
-                return run(around_sphere(m_chart, x, y, level));
+                return run(around_sphere(m_chart, x, y, size));
             break;
     }
-    // Nothing, up to where the interior begins.
-    const bool enters = in_row && x < box.x0 && x > std::int64_t{box.x0} - limit;
-    return {{0, 0, true}, enters ? static_cast<int>(box.x0 - x) : limit};
+    return {{0, 0, true}, limit};
 }
 
 }  // namespace anamorph

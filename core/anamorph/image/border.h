@@ -12,7 +12,7 @@
 
 namespace anamorph {
 
-/// What stands beyond the edge of an image.
+/// What stands beyond the edge of an image, where the image has no texels there itself.
 ///
 /// automatic follows the chart (across +-180 degrees, over the poles, across cube edges) and is black
 /// elsewhere; where a full turn fills rows of different lengths (sinusoidal, Hammer), a row goes on at the
@@ -43,23 +43,26 @@ class Border {
     Wrap wrap() const noexcept { return m_wrap; }
 
     /// A rectangle of texels of a level that lie within `piece` and stand for themselves: all of those, except in
-    /// pictures with a round edge.
-    Box interior(int piece, const Size& level) const noexcept;
+    /// pictures with a round edge. Texels beyond the edges of a picture are among them unless it is divided into faces or
+    /// closes around the sphere, where the picture goes on by itself.
+    Box interior(int piece, const SourceLevel& level) const noexcept;
 
     /// Finds the texel that stands at (x, y), which may lie any distance outside the piece's interior.
-    Texel resolve(std::int64_t x, std::int64_t y, int piece, const Size& level) const noexcept {
+    Texel resolve(std::int64_t x, std::int64_t y, int piece, const SourceLevel& level) const noexcept {
         return resolve_run(x, y, piece, level, 1).first;
     }
 
     /// Finds the texels that stand at (x, y), (x + 1, y), ... as far as they follow each other in a row, 1 to `limit`
     /// of them.
-    TexelRun resolve_run(std::int64_t x, std::int64_t y, int piece, const Size& level,
+    TexelRun resolve_run(std::int64_t x, std::int64_t y, int piece, const SourceLevel& level,
                          int limit) const noexcept;
 
     /// The number of texels after which the rows of a level's interior repeat; 0 where they do not close on themselves.
     int turn(const Size& level) const noexcept;
 
   private:
+    Box face(int piece, const Size& level) const noexcept;
+
     Chart m_chart;
     Wrap m_wrap;
 };

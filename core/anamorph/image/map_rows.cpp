@@ -81,8 +81,9 @@ double error_of(const Found& used, const BlockMap& map, const Chart& source, dou
 /// Source points as (u, v) of a chart.
 class SourceImage {
   public:
-    explicit SourceImage(const Chart& chart)
-        : m_width(chart.width()),
+    SourceImage(const Chart& chart, Output output)
+        : m_output(output),
+          m_width(chart.width()),
           m_height(chart.height()),
           m_period(chart.closed() ? chart.period() : HUGE_VAL),
           m_cube(has_faces(chart.projection())),
@@ -91,7 +92,7 @@ class SourceImage {
     void put(const Found& used, float* uv) const {
         const Point<double> at = inside(used.at);
         uv[0] = used.seen ? static_cast<float>(at.x / m_width) : -1;
-        uv[1] = used.seen ? static_cast<float>(at.y / m_height) : -1;
+        uv[1] = used.seen ? static_cast<float>(v_of(m_output, at.y / m_height)) : -1;
     }
 
   private:
@@ -104,6 +105,7 @@ class SourceImage {
         return p;
     }
 
+    Output m_output;
     double m_width, m_height, m_period;
     bool m_cube, m_poles;
 };
@@ -122,13 +124,13 @@ void fill_rows(float value, const Box& part, const MapRow& row) {
 void map_rows(const BlockMap& map, const Chart& source, Output output, const Block& block,
               const BlockPoints& points, const Box& part, const MapRow& row) {
     if (block.kind == Block::Kind::outside || output == Output::bound)
-        return fill_rows(output == Output::stmap ? -1 : static_cast<float>(block.bound), part, row);
-    const SourceImage image(source);
+        return fill_rows(is_stmap(output) ? -1 : static_cast<float>(block.bound), part, row);
+    const SourceImage image(source, output);
     float values[2 * simd::kMaxRow + 16] = {};
     for (int j = part.y0; j < part.y1; ++j) {
         const PointRow used(map, block, points, part, j);
         for (int i = 0; i < part.width(); ++i)
-            if (output == Output::stmap)
+            if (is_stmap(output))
                 image.put(used(i), values + 2 * i);
             else
                 values[i] =

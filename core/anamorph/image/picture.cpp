@@ -265,7 +265,7 @@ bool Picture::reads(int source) const {
 }
 
 int Picture::channels(const Source* first) const {
-    if (!shows_color()) return !value && output == Output::stmap ? 2 : 1;
+    if (!shows_color()) return !value && is_stmap(output) ? 2 : 1;
     if (!first) throw Error("a picture in colour needs a source");
     return first->channels();
 }
@@ -288,7 +288,7 @@ bool Picture::draw(const std::vector<const Source*>& sources, const Box& box, co
     const Source* first = check(*this, sources, view);
     const Canvas canvas(view, box);
     const BlockMap& map = *maps.front().blocks;
-    if (!map.covers(box)) canvas.fill(box, !value && output == Output::stmap ? -1.0f : 0.0f);
+    if (!map.covers(box)) canvas.fill(box, !value && is_stmap(output) ? -1.0f : 0.0f);
     const Box inside = intersection(box, {0, 0, width(), height()});
     std::atomic<bool> ok{true};
     if (value) {

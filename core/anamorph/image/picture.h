@@ -20,10 +20,19 @@
 namespace anamorph {
 
 /// What is drawn: colour; the source point as (u, v), v down, (-1, -1) where there is none; the distance of
-/// the source point used from the exact one; its proven bound. Distances in source pixels, of several layers
-/// the largest. u and v are in 0..1 on the source: across the seam of one that closes they start anew. Points
+/// the source point used from the exact one; its proven bound; the source point with v up. Distances in source
+/// pixels, of several layers the largest. u and v are in 0..1 on the source: across the seam of one that closes they start anew. Points
 /// beyond the edges of any other have values beyond; what is read there is the border's affair.
-enum class Output { color, stmap, error, bound };
+enum class Output { color, stmap, error, bound, stmap_up };
+
+/// Is the source point drawn?
+constexpr bool is_stmap(Output output) {
+    return output == Output::stmap || output == Output::stmap_up;
+}
+/// v as an output has it, of one that goes down.
+constexpr double v_of(Output output, double down) {
+    return output == Output::stmap_up ? 1 - down : down;
+}
 
 /// Is nothing drawn where all that a pixel would read lies beyond the source's edges? Source points go on there, and so do
 /// their errors and bounds.

@@ -15,6 +15,23 @@
 namespace anamorph {
 namespace {
 
+/// a / b, rounded down.
+std::int64_t floor_of(std::int64_t a, std::int64_t b) {
+    return a / b - (a % b < 0 ? 1 : 0);
+}
+
+/// The texels of a coarser level that have any of a box of the finer one.
+Box coarser_box(const Box& box, const Size& fine, const Size& coarse) {
+    const auto first = [](std::int64_t edge, int from, int to) {
+        return static_cast<int>(floor_of(edge * to, from));
+    };
+    const auto end = [](std::int64_t edge, int from, int to) {
+        return static_cast<int>(-floor_of(-edge * to, from));
+    };
+    return {first(box.x0, fine.width, coarse.width), first(box.y0, fine.height, coarse.height),
+            end(box.x1, fine.width, coarse.width), end(box.y1, fine.height, coarse.height)};
+}
+
 /// The texels of the finer level that one texel of the coarser one averages, along one axis: 2 to 4.
 struct Span {
     int first, count;
@@ -24,7 +41,7 @@ struct Span {
 /// Texel `i` of `coarse` covers [i r, (i + 1) r) of `fine`, r = fine / coarse; here in units of 1 / coarse.
 Span span_of(std::int64_t i, std::int64_t fine, std::int64_t coarse) {
     const std::int64_t from = i * fine, to = from + fine;
-    Span span{static_cast<int>(from / coarse), 0, {}};
+    Span span{static_cast<int>(floor_of(from, coarse)), 0, {}};
     for (std::int64_t k = span.first; k * coarse < to; ++k) {
         const std::int64_t overlap = std::min((k + 1) * coarse, to) - std::max(k * coarse, from);
         span.weight[static_cast<std::size_t>(span.count++)] =
@@ -134,20 +151,28 @@ void reduce(const ConstImageView& fine, int corner_x, int corner_y, const std::v
 }  // namespace
 
 struct Pyramid::Level {
-    Level(Size level_size, PixelType type, int channels)
-        : size(level_size),
-          tiles_x((size.width + kTile - 1) / kTile),
-          tiles_y((size.height + kTile - 1) / kTile),
-          pages(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) *
+    Level(const SourceLevel& level, PixelType type, int channels)
+        : size(level.size),
+          extent(level.extent),
+          tiles_x((extent.width() + kTile - 1) / kTile),
+          tiles_y((extent.height() + kTile - 1) / kTile),
+          pages(static_cast<std::size_t>(extent.width()) * static_cast<std::size_t>(extent.height()) *
                 static_cast<std::size_t>(channels * size_of(type))),
-          view(packed_view<const std::byte>(pages.data(), type, size.width, size.height, channels)),
+          view(packed_view<const std::byte>(pages.data(), type, extent.width(), extent.height(), channels)),
           ready(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(tiles_x) *
                                                       static_cast<std::size_t>(tiles_y))) {}
 
+    bool is_whole() const { return extent == SourceLevel(size).extent; }
+    /// A box of the level as one of `view`.
+    Box in_view(const Box& box) const {
+        return {box.x0 - extent.x0, box.y0 - extent.y0, box.x1 - extent.x0, box.y1 - extent.y0};
+    }
+
     Size size;
+    Box extent;
     int tiles_x, tiles_y;
     Pages pages;
-    ConstImageView view;
+    ConstImageView view;  ///< of the extent
     std::unique_ptr<std::atomic<bool>[]> ready;
     // One for every 16th tile. A thread holds at most one of a level, and goes from coarse to fine.
     mutable std::array<std::mutex, 16> making;
@@ -156,13 +181,13 @@ struct Pyramid::Level {
 Pyramid::Pyramid(const Source& base, int columns, int rows) : m_base(base) {
     if (base.levels() != 1) return;
     const bool pieces = columns > 1 || rows > 1;
-    Size size = base.size(0);
+    SourceLevel finer = base.level(0);
     for (;;) {
-        const Size next{size.width / 2, size.height / 2};
+        const Size size = finer.size, next{size.width / 2, size.height / 2};
         if (next.width / columns < kLeast || next.height / rows < kLeast) return;
         if (pieces && (size.width % (2 * columns) != 0 || size.height % (2 * rows) != 0)) return;
-        m_made.push_back(std::make_unique<Level>(next, base.type(), base.channels()));
-        size = next;
+        finer = {next, coarser_box(finer.extent, size, next)};
+        m_made.push_back(std::make_unique<Level>(finer, base.type(), base.channels()));
     }
 }
 
@@ -172,16 +197,22 @@ Size Pyramid::size(int level) const noexcept {
     return made(level) ? at(level).size : m_base.size(level);
 }
 
+Box Pyramid::extent(int level) const noexcept {
+    return made(level) ? at(level).extent : m_base.extent(level);
+}
+
 const ConstImageView* Pyramid::view(int level) const noexcept {
-    return made(level) ? &at(level).view : m_base.view(level);
+    if (!made(level)) return m_base.view(level);
+    return at(level).is_whole() ? &at(level).view : nullptr;
 }
 
 bool Pyramid::read(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept {
     if (!made(level)) return m_base.read(level, box, texels, row_stride);
     if (!prepare(level, box)) return false;
     const ConstImageView& from = at(level).view;
-    for (int y = box.y0; y < box.y1; ++y, texels += row_stride)
-        std::memcpy(texels, from.at(box.x0, y), static_cast<std::size_t>(from.pixel_stride * box.width()));
+    const Box rows = at(level).in_view(box);
+    for (int y = rows.y0; y < rows.y1; ++y, texels += row_stride)
+        std::memcpy(texels, from.at(rows.x0, y), static_cast<std::size_t>(from.pixel_stride * rows.width()));
     return true;
 }
 
@@ -189,18 +220,17 @@ bool Pyramid::prepare(int level, const Box& box) const noexcept try {
     if (!made(level)) return m_base.prepare(level, box);
     if (box.empty()) return true;
     const Level& to = at(level);
-    for (int ty = box.y0 / kTile; ty <= (box.y1 - 1) / kTile; ++ty)
-        for (int tx = box.x0 / kTile; tx <= (box.x1 - 1) / kTile; ++tx) {
+    const Box part = to.in_view(box);
+    for (int ty = part.y0 / kTile; ty <= (part.y1 - 1) / kTile; ++ty)
+        for (int tx = part.x0 / kTile; tx <= (part.x1 - 1) / kTile; ++tx) {
             const std::size_t tile = static_cast<std::size_t>(ty) * static_cast<std::size_t>(to.tiles_x) +
                                      static_cast<std::size_t>(tx);
             std::atomic<bool>& ready = to.ready[tile];
             if (ready.load(std::memory_order_acquire)) continue;
             const std::lock_guard lock(to.making[tile % to.making.size()]);
             if (ready.load(std::memory_order_relaxed)) continue;
-            const Box all{0, 0, to.size.width, to.size.height};
-            if (!make_tile(level,
-                           intersection(all, {tx * kTile, ty * kTile, (tx + 1) * kTile, (ty + 1) * kTile})))
-                return false;
+            const int x = to.extent.x0 + tx * kTile, y = to.extent.y0 + ty * kTile;
+            if (!make_tile(level, intersection(to.extent, {x, y, x + kTile, y + kTile}))) return false;
             ready.store(true, std::memory_order_release);
         }
     return true;
@@ -235,13 +265,19 @@ bool Pyramid::make_tile(int level, const Box& tile) const {
         fine.width = box.width();
         fine.height = box.height();
     } else {
-        const std::ptrdiff_t stride = std::ptrdiff_t{box.width()} * channels() * size_of(type());
+        // Texels on the outer edges of the extent may cover some that the finer level lacks: 0.
+        const Box there = intersection(box, extent(level - 1));
+        const std::ptrdiff_t pixel = std::ptrdiff_t{channels()} * size_of(type()),
+                             stride = box.width() * pixel;
         copy.resize(static_cast<std::size_t>(stride * box.height()));
-        if (!read(level - 1, box, copy.data(), stride)) return false;
+        if (!read(level - 1, there, copy.data() + (there.y0 - box.y0) * stride + (there.x0 - box.x0) * pixel,
+                  stride))
+            return false;
         fine = packed_view<const std::byte>(copy.data(), type(), box.width(), box.height(), channels());
     }
 
-    const std::ptrdiff_t offset = to.view.at(tile.x0, tile.y0) - to.view.data;
+    const Box in_view = to.in_view(tile);
+    const std::ptrdiff_t offset = to.view.at(in_view.x0, in_view.y0) - to.view.data;
     const auto run = [&]<class T>(T) {
         reduce<T>(fine, box.x0, box.y0, across, down, unassociated_alpha(), to.pages.data() + offset,
                   to.view.row_stride);

@@ -15,7 +15,8 @@ namespace anamorph {
 /// (floor(w / 2) x floor(h / 2) texels), its texel i the average of [i r, (i + 1) r) with r
 /// the ratio of the sizes. Levels have the base's pixel type, rounded to nearest even, so that a level of
 /// uint8 adds a third of a step (standard deviation) at most; unassociated alpha weighs colour while
-/// averaging, and is as unassociated in the result.
+/// averaging, and is as unassociated in the result. Where the base goes on beyond the edges of its picture, so do
+/// the levels; what their outermost texels have beyond the base's is 0.
 ///
 /// Levels are made in tiles of kTile texels when first read; memory is used for tiles that were. Any order of
 /// reading and any number of threads give the same bits.
@@ -37,6 +38,7 @@ class Pyramid final : public Source {
     int unassociated_alpha() const noexcept override { return m_base.unassociated_alpha(); }
     int levels() const noexcept override { return m_base.levels() + static_cast<int>(m_made.size()); }
     Size size(int level) const noexcept override;
+    Box extent(int level) const noexcept override;
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int level) const noexcept override;

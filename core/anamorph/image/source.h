@@ -11,6 +11,17 @@ inline constexpr int kMaxSide = 1 << 20;  ///< the largest width and height of a
 
 class SummedAreas;
 
+/// One resolution of a source: the size of its picture, and the texels that there are.
+struct SourceLevel {
+    Size size;
+    /// The picture's texels, (0, 0) to (width - 1, height - 1), and those that stand for themselves beyond its edges.
+    Box extent;
+
+    SourceLevel(const Size& picture, const Box& all) : size(picture), extent(all) {}
+    /// A level of which nothing stands beyond the edges.
+    SourceLevel(const Size& picture) : SourceLevel(picture, {0, 0, picture.width, picture.height}) {}
+};
+
 /// The pixels of one image at one or more resolutions, level 0 the finest. Reading is thread safe.
 class Source {
   public:
@@ -24,13 +35,19 @@ class Source {
     virtual int levels() const noexcept = 0;
     /// The size of a level.
     virtual Size size(int level) const noexcept = 0;
+    /// The texels of a level that can be read: those of the picture, and of an image that has pixels beyond its edges
+    /// (overscan: a data window larger than the display window) the smallest rectangle around both. Texels of it that the
+    /// image lacks are 0.
+    virtual Box extent(int level) const noexcept { return SourceLevel(size(level)).extent; }
+    /// A level's size and extent.
+    SourceLevel level(int level) const noexcept { return {size(level), extent(level)}; }
 
-    /// Copies the texels of `box`, which lies inside the level, to `texels`: packed pixels of type(), rows
+    /// Copies the texels of `box`, which lies inside the level's extent, to `texels`: packed pixels of type(), rows
     /// `row_stride` bytes apart. False where they cannot be read; the source keeps the reason for its owner.
     virtual bool read(int level, const Box& box, std::byte* texels,
                       std::ptrdiff_t row_stride) const noexcept = 0;
 
-    /// The pixels of a level where they stand in memory as a whole, else null. Only boxes that prepare() was called for
+    /// The pixels of a level where they stand in memory as a whole and none stand beyond its edges, else null. Only boxes that prepare() was called for
     /// are certain to hold their texels.
     virtual const ConstImageView* view(int level) const noexcept {
         static_cast<void>(level);

@@ -87,15 +87,17 @@ std::size_t kind_of(double value) {
 class SummedAreas::Texels {
   public:
     explicit Texels(const Source& source)
-        : m_source(source), m_size(source.size(0)), m_channels(source.channels()) {
+        : m_source(source), m_extent(source.extent(0)), m_channels(source.channels()) {
         const std::size_t values =
-            static_cast<std::size_t>(m_size.width) * static_cast<std::size_t>(m_channels);
+            static_cast<std::size_t>(m_extent.width()) * static_cast<std::size_t>(m_channels);
         m_bytes.resize(values * static_cast<std::size_t>(size_of(source.type())));
         m_values.resize(values);
     }
 
+    /// Row y of the extent.
     const std::vector<double>& row(int y) {
-        if (!m_source.read(0, {0, y, m_size.width, y + 1}, m_bytes.data(),
+        y += m_extent.y0;
+        if (!m_source.read(0, {m_extent.x0, y, m_extent.x1, y + 1}, m_bytes.data(),
                            static_cast<std::ptrdiff_t>(m_bytes.size())))
             throw Error("a source cannot be read");
         const PixelType type = m_source.type();
@@ -127,14 +129,16 @@ class SummedAreas::Texels {
     }
 
     const Source& m_source;
-    Size m_size;
+    Box m_extent;
     int m_channels;
     std::vector<std::byte> m_bytes;
     std::vector<double> m_values;
 };
 
 SummedAreas::SummedAreas(const Source& source)
-    : m_size(source.size(0)), m_units(static_cast<std::size_t>(source.channels()), 1.0) {
+    : m_size(source.size(0)),
+      m_extent(source.extent(0)),
+      m_units(static_cast<std::size_t>(source.channels()), 1.0) {
     Texels texels(source);
     for (int c = 0; c < source.channels(); ++c) m_scales.push_back(texels.scale(c));
     choose_units(texels);
@@ -146,7 +150,7 @@ void SummedAreas::choose_units(Texels& texels) {
     const std::size_t channels = m_units.size();
     std::vector<double> total(channels, 0.0);
     std::array<bool, 3> there{};
-    for (int y = 0; y < m_size.height; ++y) {
+    for (int y = 0; y < m_extent.height(); ++y) {
         const std::vector<double>& row = texels.row(y);
         for (std::size_t i = 0; i < row.size(); ++i)
             if (std::isfinite(row[i]))
@@ -156,7 +160,7 @@ void SummedAreas::choose_units(Texels& texels) {
     }
     for (std::size_t c = 0; c < channels; ++c)
         m_units[c] = total[c] > 0 ? std::ldexp(1.0, std::max(std::ilogb(total[c]) - 60, -1000)) : 1;
-    const std::size_t room = at(0, m_size.height + 1);
+    const std::size_t room = at(0, m_extent.height() + 1);
     m_sums.resize(room);
     for (std::size_t kind = 0; kind < there.size(); ++kind)
         if (there[kind]) m_special[kind].resize(room);
@@ -166,7 +170,7 @@ void SummedAreas::add_up(Texels& texels) {
     const std::size_t channels = m_units.size();
     std::vector<std::uint64_t> sum(channels);
     std::array<std::vector<std::uint64_t>, 3> special;
-    for (int y = 0; y < m_size.height; ++y) {
+    for (int y = 0; y < m_extent.height(); ++y) {
         const std::vector<double>& row = texels.row(y);
         std::fill(sum.begin(), sum.end(), 0);
         for (std::vector<std::uint64_t>& of : special) of.assign(channels, 0);
@@ -185,9 +189,10 @@ void SummedAreas::add_up(Texels& texels) {
     }
 }
 
-/// A part of a rectangle.
+/// A part of a rectangle; its runs are counted from texel (left, top) of the table.
 struct SummedAreas::Part {
     Runs across, down;
+    int left = 0, top = 0;
 };
 
 void SummedAreas::mean(double x, double y, double width, double height, Wrap wrap,
@@ -198,7 +203,17 @@ void SummedAreas::mean(double x, double y, double width, double height, Wrap wra
     const double w = width > 1 ? std::min(width, kFar) : 1, h = height > 1 ? std::min(height, kFar) : 1;
     x = std::clamp(x, -kFar, kFar);
     y = std::clamp(y, -kFar, kFar);
-    const Part all{{x - w / 2, x + w / 2, m_size.width, wrap}, {y - h / 2, y + h / 2, m_size.height, wrap}};
+    if (wrap == Wrap::black || wrap == Wrap::automatic) {
+        x -= m_extent.x0;
+        y -= m_extent.y0;
+        const Part all{{x - w / 2, x + w / 2, m_extent.width(), wrap},
+                       {y - h / 2, y + h / 2, m_extent.height(), wrap}};
+        return mean_of({&all, 1}, w * h, pixel);
+    }
+    const Part all{{x - w / 2, x + w / 2, m_size.width, wrap},
+                   {y - h / 2, y + h / 2, m_size.height, wrap},
+                   -m_extent.x0,
+                   -m_extent.y0};
     mean_of({&all, 1}, w * h, pixel);
 }
 
@@ -215,7 +230,9 @@ void SummedAreas::mean_over_poles(double x, double y, double width, double heigh
     const double above = y - h / 2, below = y + h / 2;
     const auto part = [&](double at, double from, double to) {
         return Part{{at - w / 2, at + w / 2, m_size.width, Wrap::periodic},
-                    {from, to, m_size.height, Wrap::black}};
+                    {from, to, m_size.height, Wrap::black},
+                    -m_extent.x0,
+                    -m_extent.y0};
     };
     const double opposite = x + across / 2;
     const Part parts[] = {part(x, above, below), part(opposite, 0, -above),
@@ -229,9 +246,10 @@ void SummedAreas::clear(float* pixel) const noexcept {
 
 void SummedAreas::mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept {
     for (std::size_t c = 0; c < m_units.size(); ++c) {
-        const auto over = [&](const std::vector<std::uint64_t>& sums, const Run& i, const Run& j) {
-            return sums[at(i.end, j.end) + c] - sums[at(i.first, j.end) + c] - sums[at(i.end, j.first) + c] +
-                   sums[at(i.first, j.first) + c];
+        const auto over = [&](const std::vector<std::uint64_t>& sums, const Part& part, const Run& i,
+                              const Run& j) {
+            const auto sum = [&](int x, int y) { return sums[at(part.left + x, part.top + y) + c]; };
+            return sum(i.end, j.end) - sum(i.first, j.end) - sum(i.end, j.first) + sum(i.first, j.first);
         };
         double sum = 0;
         std::array<std::uint64_t, 3> special{};
@@ -239,10 +257,10 @@ void SummedAreas::mean_of(std::span<const Part> parts, double area, float* pixel
             for (const Run& j : part.down)
                 for (const Run& i : part.across) {
                     sum += i.weight * j.weight *
-                           static_cast<double>(static_cast<std::int64_t>(over(m_sums, i, j)));
+                           static_cast<double>(static_cast<std::int64_t>(over(m_sums, part, i, j)));
                     const bool counts = i.weight >= kSameTexel && j.weight >= kSameTexel;
                     for (std::size_t kind = 0; counts && kind < special.size(); ++kind)
-                        if (!m_special[kind].empty()) special[kind] |= over(m_special[kind], i, j);
+                        if (!m_special[kind].empty()) special[kind] |= over(m_special[kind], part, i, j);
                 }
         const auto [none, high, low] = special;
         pixel[c] = none || (high && low) ? NAN

@@ -27,7 +27,7 @@ class SummedAreas {
     /// The mean over the rectangle of width x height texels about (x, y), in which texels are squares of one color, to
     /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are
     /// no number, are 1, so that the smallest rectangle interpolates bilinearly. Beyond the edges as `wrap`, where
-    /// automatic is black. A texel that is no number makes no number of its channel's means over it, and an infinite one
+    /// automatic is black; where that is asked for, texels beyond the edges of the source's picture stand for themselves. A texel that is no number makes no number of its channel's means over it, and an infinite one
     /// infinite ones, unless less than kSameTexel (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
     void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
 
@@ -39,8 +39,9 @@ class SummedAreas {
     class Texels;
     struct Part;
 
+    /// The number of a corner of the table's texels, counted from its own.
     std::size_t at(int x, int y) const {
-        return (static_cast<std::size_t>(y) * (static_cast<std::size_t>(m_size.width) + 1) +
+        return (static_cast<std::size_t>(y) * (static_cast<std::size_t>(m_extent.width()) + 1) +
                 static_cast<std::size_t>(x)) *
                m_units.size();
     }
@@ -50,6 +51,7 @@ class SummedAreas {
     void mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept;
 
     Size m_size;
+    Box m_extent;                       ///< of the table
     std::vector<double> m_units;        ///< channel by channel: of the sums
     std::vector<double> m_scales;       ///< and of the channel's values
     std::vector<std::uint64_t> m_sums;  ///< modulo 2^64

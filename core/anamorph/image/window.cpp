@@ -98,8 +98,8 @@ class Gather {
           m_pixel(std::ptrdiff_t{source.channels()} * size_of(source.type())) {}
 
     bool run() const {
-        const Size size = m_source.size(m_level);
-        const Box own = intersection(m_box, m_border.interior(m_piece, size));
+        const SourceLevel level = m_source.level(m_level);
+        const Box own = intersection(m_box, m_border.interior(m_piece, level));
         if (!own.empty() &&
             !m_source.read(m_level, own, at(own.x0 - m_box.x0, own.y0 - m_box.y0), m_row_stride))
             return false;
@@ -114,7 +114,7 @@ class Gather {
                     continue;
                 }
                 const int limit = (crosses && x < own.x0 ? own.x0 : m_box.x1) - x;
-                const TexelRun run = m_border.resolve_run(x, y, m_piece, size, limit);
+                const TexelRun run = m_border.resolve_run(x, y, m_piece, level, limit);
                 patches.add(x - m_box.x0, y - m_box.y0, run);
                 x += run.count;
             }
@@ -156,13 +156,13 @@ const ConstImageView* WindowReader::view_of(int level, const Box& texels) const 
 }
 
 Box WindowReader::place_of(int level, int piece, const Box& box) const noexcept {
-    const Size size = m_source.size(level);
-    if (holds(m_border.interior(piece, size), box)) return box;
+    const SourceLevel of = m_source.level(level);
+    if (holds(m_border.interior(piece, of), box)) return box;
     const std::int64_t width = std::int64_t{box.x1} - box.x0, height = std::int64_t{box.y1} - box.y0;
-    if (width <= 0 || height <= 0 || width > size.width || height > size.height) return {};
+    if (width <= 0 || height <= 0 || width > of.size.width || height > of.size.height) return {};
     Box place;
     for (int j = 0; j < box.height(); ++j) {
-        const TexelRun run = m_border.resolve_run(box.x0, box.y0 + j, piece, size, box.width());
+        const TexelRun run = m_border.resolve_run(box.x0, box.y0 + j, piece, of, box.width());
         const Texel& first = run.first;
         if (j == 0) place = {first.x, first.y, first.x + box.width(), first.y + box.height()};
         const bool follows = first.x == place.x0 && first.y == place.y0 + j;

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -23,10 +24,12 @@ enum class Units { pixels, fractions };
 /// from. push: the mesh lies in the source image, and its vertices, which one drags, say where in the target they go.
 enum class Direction { pull, push };
 
-/// The pixels of an ST-map: u and v of each pixel, in fractions, row by row from the top left.
+/// The pixels of an ST-map: u and v of each pixel, in fractions, row by row from the top left; both are NaN in a hole, a pixel
+/// that comes from nowhere.
 struct StSamples {
     std::vector<float> uv;
-    double most = 0;  ///< the largest magnitude in uv
+    double most = 0;         ///< the largest magnitude in uv
+    std::int64_t holes = 0;  ///< pixels that are holes
 };
 
 /// A rectangular mesh of columns x rows cells, any of which may be subdivided into four, to any depth.
@@ -40,6 +43,8 @@ struct ControlMesh {
     Direction direction = Direction::pull;
     /// The size of the ST-map that the mesh was made of; 0 where there is none.
     int width = 0, height = 0;
+    /// The display window of that ST-map, in its pixels, where its data window is another.
+    std::optional<Box> display = {};
     int columns = 1, rows = 1;
     /// The (columns + 1) (rows + 1) vertices of level 0, row by row from the top left.
     std::vector<Point<double>> vertices;

@@ -253,7 +253,23 @@ void check_stmap(int width, int height, int step, std::string_view name) {
 void check_finite(const float* at, int x, int y, std::string_view name) {
     if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
         throw Error(excerpt(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
-                    std::to_string(at[0]) + "," + std::to_string(at[1]), "must be finite numbers");
+                    std::to_string(at[0]) + "," + std::to_string(at[1]),
+                    "must be finite numbers; it is a hole where step is 1");
+}
+
+/// Makes holes of pixels that are not finite, and finds the largest magnitude of the others.
+void find_holes(StSamples& samples) {
+    samples.most = 0;
+    for (std::size_t i = 0; i < samples.uv.size(); i += 2) {
+        float& u = samples.uv[i];
+        float& v = samples.uv[i + 1];
+        if (std::isfinite(u) && std::isfinite(v)) {
+            samples.most = std::max({samples.most, std::fabs(double{u}), std::fabs(double{v})});
+        } else {
+            u = v = NAN;
+            ++samples.holes;
+        }
+    }
 }
 
 }  // namespace
@@ -282,14 +298,12 @@ WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::strin
                     "must be " + std::to_string(numbers));
     simd::SampleRange range;
     simd::extend_range(uv.data(), static_cast<std::ptrdiff_t>(numbers / 2), range);
-    // Which one it is takes longer to find.
-    if (!(range.most() < HUGE_VAL))
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x)
-                check_finite(&uv[2 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                      static_cast<std::size_t>(x))],
-                             x, y, name);
-    mesh.samples = std::make_shared<StSamples>(StSamples{std::move(uv), range.most()});
+    StSamples samples{std::move(uv), range.most()};
+    if (!(samples.most < HUGE_VAL)) find_holes(samples);
+    if (samples.holes == static_cast<std::int64_t>(numbers / 2))
+        throw Error(excerpt(name) +
+                    " has no pixel that comes from anywhere: must have u and v that are finite");
+    mesh.samples = std::make_shared<StSamples>(std::move(samples));
     return {excerpt(name), std::move(mesh)};
 }
 

@@ -53,7 +53,8 @@ inline constexpr int kMostStMapSide = 1 << 20;
 /// floats apart. Every `step`-th pixel is taken, and the last of each row and column; 1 takes all.
 WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
                         std::ptrdiff_t row_stride, int step, std::string_view name);
-/// A pull mesh from every pixel of an ST-map of two channels, without gaps, which it keeps.
+/// A pull mesh from every pixel of an ST-map of two channels, without gaps, which it keeps. A pixel whose u or v is not a
+/// finite number is a hole. Throws Error where all are.
 WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name);
 
 }  // namespace anamorph

@@ -12,12 +12,22 @@
 namespace anamorph {
 namespace {
 
+/// Only what is taken pixel for pixel may have holes.
+void check_holes(const ControlMesh& mesh, const Size& target, const std::string& name) {
+    if (!mesh.samples || mesh.samples->holes == 0 || StMapPlan::serves(mesh, target)) return;
+    throw Error(
+        name + " has " + std::to_string(mesh.samples->holes) +
+        " pixels that come from nowhere: must be drawn pixel for pixel, with direction=pull and in its own " +
+        "size, " + std::to_string(mesh.width) + "x" + std::to_string(mesh.height));
+}
+
 std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source, const Size& target,
                                           const MeshWarpOptions& options) {
     if (const ControlPoints* points = std::get_if<ControlPoints>(&map.shape))
         return std::make_unique<ScatteredPlan>(Scattered(*points, target, source, options.amount, map.name),
                                                options.scheme, options.tol);
     const ControlMesh& mesh = std::get<ControlMesh>(map.shape);
+    check_holes(mesh, target, map.name);
     if (mesh.direction == Direction::push)
         return std::make_unique<InversePlan>(Mesh(mesh, source, target, options.amount, map.name),
                                              options.scheme, options.tol, map.name);

@@ -124,7 +124,9 @@ void StMapPlan::plan(const Box& box, int, Blocks& blocks) const {
                             y = span(1, m_source.height, b.y0 * m_scale.y, b.y1 * m_scale.y);
         // The offset from the base, which is rounded down, is rounded to float, and twice more where it is read.
         const double offsets = std::hypot(x.y + 1, y.y + 1) * (3.03 * 0x1p-24);
-        if (!(m_tol > 0 && writer.computed(b, {x.x, y.x}, offsets + in_double))) writer.exact(b, in_double);
+        const bool has_holes = !(range.most() < HUGE_VAL);
+        if (!(m_tol > 0 && !has_holes && writer.computed(b, {x.x, y.x}, offsets + in_double)))
+            writer.exact(b, in_double);
     });
 }
 
@@ -144,7 +146,28 @@ Jacobian StMapPlan::jacobian(const LatticeWeights& across, const LatticeWeights&
 }
 
 Jacobian StMapPlan::jacobian(double x, double y, int) const noexcept {
-    return jacobian({m_x, x}, {m_y, y});
+    const Jacobian j = jacobian({m_x, x}, {m_y, y});
+    if (m_samples->holes == 0 || std::isfinite(j.x_i + j.y_i + j.x_j + j.y_j)) return j;
+    const auto pixel = [](double at, int size) {
+        return static_cast<int>(std::clamp(std::floor(at), 0.0, size - 1.0));
+    };
+    return jacobian_by_neighbors(pixel(x, width()), pixel(y, height()));
+}
+
+/// Of a pixel near a hole: the steps to and from the pixels beside it, of those that are none.
+Jacobian StMapPlan::jacobian_by_neighbors(int column, int row) const {
+    const auto at = [&](int x, int y) {
+        const bool inside = x >= 0 && y >= 0 && x < width() && y < height();
+        return inside ? point(x, y) : Point<double>{NAN, NAN};
+    };
+    const Point<double> here = at(column, row);
+    const auto step = [&](const Point<double>& before, const Point<double>& after) {
+        if (std::isnan(after.x)) return here - before;
+        return std::isnan(before.x) ? after - here : (after - before) * 0.5;
+    };
+    const Point<double> across = step(at(column - 1, row), at(column + 1, row)),
+                        down = step(at(column, row - 1), at(column, row + 1));
+    return {across.x, across.y, down.x, down.y};
 }
 
 /// +1, or -1 where most cells between samples are flipped.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blocks of an ST-map that is as large as the picture and taken pixel for pixel: the source point of a
-// pixel is its sample, and nothing is interpolated. Between the samples the map is that of the mesh that they
+// pixel is its sample, and nothing is interpolated; a hole has none. Between the samples the map is that of the mesh that they
 // make (mesh_lattice.h), which gives derivatives and folds.
 #pragma once
 
@@ -39,6 +39,7 @@ class StMapPlan final : public WarpPlan {
     Point<double> point(int column, int row) const;
     Point<double> displacement(int column, int row) const;
     Jacobian jacobian(const LatticeWeights& across, const LatticeWeights& down) const;
+    Jacobian jacobian_by_neighbors(int column, int row) const;
     double rounding() const;
     double orientation() const;
 

@@ -41,7 +41,7 @@ bool only(const std::vector<double>& weights, std::size_t shape) {
 
 /// The weights of the pictures in what is drawn.
 std::vector<double> color_weights(const MorphOptions& options, int shapes) {
-    if (options.picture || options.output == Output::stmap) {
+    if (options.picture || is_stmap(options.output)) {
         const int k = options.picture.value_or(0);
         if (k < 0 || k >= shapes)
             throw Error("picture", std::to_string(k),

@@ -135,6 +135,7 @@ ParameterTable look_rows() {
               "nothing"},
              {"seen", surface::DrapeOutput::seen,
               "1 where the surface is seen in the pixel's middle, else 0"}}),
+        flip_v(),
     };
 }
 

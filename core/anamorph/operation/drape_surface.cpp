@@ -65,7 +65,7 @@ std::vector<surface::SurfaceSum::Part> parts_of(const ParameterValues& values) {
 std::vector<float> texels_of(const SideFile& file, const char* key, const SideFileReader& reader,
                              int channels, Size& size) {
     const std::unique_ptr<SideImage> image = reader.image(key, file.name);
-    size = image->size();
+    size = {image->display().width(), image->display().height()};
     if (image->channels() < channels)
         throw Error(
             key, printable(file.name),
@@ -74,7 +74,7 @@ std::vector<float> texels_of(const SideFile& file, const char* key, const SideFi
         throw Error(key, printable(file.name),
                     "has " + std::to_string(size.width) + "x" + std::to_string(size.height) +
                         " pixels: must have at most " + std::to_string(surface::SampledField::kMostTexels));
-    return image->read(channels);
+    return read_display(*image, channels, std::string(key) + " \"" + printable(file.name) + "\"");
 }
 
 std::shared_ptr<const surface::SampledField> read_positions(const SideFile& file,

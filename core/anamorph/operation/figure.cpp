@@ -493,8 +493,10 @@ std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Fil
     for (const std::string& name : film.images()) {
         const std::string key = kTextureKey + name;
         MipTexture texture{name, {}};
-        if (std::find(input.missing.begin(), input.missing.end(), key) == input.missing.end())
-            texture.size = input.reader.image(key, input.files.at(key).name)->size();
+        if (std::find(input.missing.begin(), input.missing.end(), key) == input.missing.end()) {
+            const Box shown = input.reader.image(key, input.files.at(key).name)->display();
+            texture.size = Size{shown.width(), shown.height()};
+        }
         if (texture.size && 2 * std::max(texture.size->width, texture.size->height) > kMaxSide)
             throw Error(name + " has too many pixels for output=mips: must have up to " +
                         std::to_string(kMaxSide / 2) + " either way");

@@ -32,6 +32,7 @@ class FlatPictures final : public Pictures {
         if (!size) return {};
         PictureRequest picture;
         picture.size = *size;
+        picture.display = level_display(m_request.display, level);
         picture.pixels = pixels_of(m_request.output);
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
         if (m_request.says)
@@ -57,7 +58,7 @@ std::shared_ptr<const Attributes> saying(Attribute attribute) {
     return all;
 }
 
-FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target) {
+FlatRequest flat_request(const ParameterValues& values, const SourceFacts& source, const Size& target) {
     FlatRequest r{Chart(Projection::rectilinear, source.width, source.height),
                   target,
                   {},
@@ -66,7 +67,7 @@ FlatRequest flat_request(const ParameterValues& values, const Size& source, cons
                   rows::chosen_output(values)};
     r.plan.scheme = rows::chosen<Scheme>(values, "scheme");
     r.plan.tol = values.number("tol");
-    r.plan.cull = ends_at_edges(r.wrap, r.output);
+    r.plan.cull = ends_at_edges(r.wrap, r.output) && !source.overscan;
     return r;
 }
 

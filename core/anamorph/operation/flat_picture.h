@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "anamorph/image/picture.h"
 #include "anamorph/operation/operation.h"
@@ -22,6 +23,7 @@ struct FlatRequest {
     Wrap wrap;
     Output output;
     std::shared_ptr<const Attributes> says = {};  ///< besides the tolerance, if it says more
+    std::optional<Box> display = {};              ///< of the target, where that is more than it
 
     Size source_size() const { return {source.width(), source.height()}; }
 };
@@ -30,7 +32,7 @@ struct FlatRequest {
 std::shared_ptr<const Attributes> saying(Attribute attribute);
 
 /// From a flat picture, with what rows of the table say: filter, wrap, output, scheme and tol.
-FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target);
+FlatRequest flat_request(const ParameterValues& values, const SourceFacts& source, const Size& target);
 
 /// The map, and what it says of its picture beyond what every picture reached.
 struct FlatMap {

@@ -17,7 +17,9 @@ ParameterTable make_lens_table() {
     using namespace rows;
     Parameter extent = size(
         "width and height of the picture, or its width alone, about the same middle and as fine as the "
-        "source; all: so many that nothing of the source is cut off; by default the source's");
+        "source; all: the source's, with a data window around it that holds all of the source; by default "
+        "the "
+        "source's");
     extent.choices = {kAll};
     return {
         image("src", "the source image; by default the recipe's name without .lens"),
@@ -45,6 +47,7 @@ ParameterTable make_lens_table() {
                 {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
+        flip_v(),
     };
 }
 
@@ -85,19 +88,34 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
 }
 
+/// The least size about the middle of a source's picture in which all of its pixels are.
+Size size_around(const SourceFacts& facts) {
+    const Size size{facts.width, facts.height};
+    const Box all = facts.overscan.value_or(Box{0, 0, size.width, size.height});
+    return {std::max(size.width - 2 * all.x0, 2 * all.x1 - size.width),
+            std::max(size.height - 2 * all.y0, 2 * all.y1 - size.height)};
+}
+
+/// A picture of `size` in the middle of a larger one; the sizes differ by whole pixels on both sides.
+Box in_middle_of(const Size& larger, const Size& size) {
+    const int x = (larger.width - size.width) / 2, y = (larger.height - size.height) / 2;
+    return {x, y, x + size.width, y + size.height};
+}
+
 std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height};
     const auto mode = chosen<LensMode>(values, "mode");
     const bool all = values.text("size") == kAll;
     const Size asked = all ? source : rows::size_of(values, source);
     const Observed observed = observed_picture(values, facts, mode == LensMode::distort ? asked : source);
-    const Size target = all ? LensMap::covering(observed.chart, mode, source) : asked;
+    const Size target = all ? LensMap::covering(observed.chart, mode, size_around(facts)) : asked;
     if (target.width > kMaxSide || target.height > kMaxSide)
         throw Error("size", kAll,
                     "makes " + std::to_string(target.width) + "x" + std::to_string(target.height) +
                         " pixels: must be at most " + std::to_string(kMaxSide) + " either way");
-    FlatRequest request = flat_request(values, source, target);
+    FlatRequest request = flat_request(values, facts, target);
     request.says = observed.says;
+    if (!(target == asked)) request.display = in_middle_of(target, asked);
     return flat_pictures(request, [request, observed, mode](const Size& pixels) {
         return FlatMap{std::make_shared<LensPlan>(
             LensMap(observed.chart, mode, request.target, pixels, request.source_size()), request.plan)};

@@ -41,6 +41,7 @@ ParameterTable make_map_table() {
                 {"direct", Scheme::direct}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
+        flip_v(),
     };
 }
 
@@ -63,7 +64,7 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
         throw Error("scheme", "direct", "is of direction=pull: must be auto, exact, blocks or residual");
     const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions",
                                  pushes};
-    const FlatRequest request = flat_request(values, source, target);
+    const FlatRequest request = flat_request(values, facts, target);
     const PlaneFormula formula = parse_formula(text, setting);
     if (pushes)
         return pictures_of<PushedPlan>(request, [request, formula](const Size& pixels) {

@@ -57,6 +57,7 @@ ParameterTable make_morph_table() {
         scheme({{"auto", MorphScheme::automatic}, {"exact", MorphScheme::exact}}),
         colorspace("color space to filter and blend in; by default that of the pictures"),
         output({{"lines", Word::kNone, "color with the features of all pictures drawn over it"}}),
+        flip_v(),
         choice("picture", "", morph_pictures(),
                "one picture alone, warped, in place of the blend: its color, stmap, error, bound; by default "
                "stmap is that of a, error and bound are the largest"),

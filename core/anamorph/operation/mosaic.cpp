@@ -72,6 +72,7 @@ ParameterTable make_mosaic_table() {
                 {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
         output({{kDistortion, Word::kNone, "how far heights may be from 1 times the true ones"}}),
+        flip_v(),
     };
 }
 
@@ -108,7 +109,7 @@ MosaicRequest read_request(const ParameterValues& values, const SourceFacts& fac
     MosaicRequest request{panorama,
                           read_target_chart(values, panorama),
                           read_orientation(values),
-                          read_reproject_options(values),
+                          read_reproject_options(values, facts),
                           stack,
                           {},
                           {}};

@@ -2,6 +2,7 @@
 #include "anamorph/operation/operation.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace anamorph {
 
@@ -51,6 +52,9 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         if (facts.lens) key += " lens=" + facts.lens->text();
         if (facts.focal_length)
             key += " focal length=" + shortest(*facts.focal_length) + " by " + facts.focal_length_said_by;
+        if (const std::optional<Box>& all = facts.overscan)
+            key += " of " + std::to_string(all->x0) + "," + std::to_string(all->y0) + " to " +
+                   std::to_string(all->x1) + "," + std::to_string(all->y1);
         if (image.alpha >= 0) key += " alpha=" + std::to_string(image.alpha);
         key += "\n";
     }
@@ -71,6 +75,13 @@ void check_color_space(const SourceImage& image, const std::string& name, const 
 std::optional<Size> level_size(const Size& size, int level) {
     if (level > 0 && std::max(size.width, size.height) >> level < 1) return {};
     return Size{std::max(1, size.width >> level), std::max(1, size.height >> level)};
+}
+
+std::optional<Box> level_display(const std::optional<Box>& display, int level) {
+    if (!display) return {};
+    const auto at = [&](int edge) { return static_cast<int>(std::lround(std::ldexp(edge, -level))); };
+    const int x = at(display->x0), y = at(display->y0);
+    return Box{x, y, std::max(x + 1, at(display->x1)), std::max(y + 1, at(display->y1))};
 }
 
 }  // namespace anamorph

@@ -17,6 +17,7 @@
 
 #include "anamorph/chart/chart.h"
 #include "anamorph/error.h"
+#include "anamorph/geometry/box.h"
 #include "anamorph/geometry/size.h"
 #include "anamorph/image/attribute.h"
 #include "anamorph/image/source.h"
@@ -38,6 +39,8 @@ struct SourceFacts {
     /// The focal length of the camera it was taken with, in pixels, and what says so.
     std::optional<double> focal_length = {};
     std::string focal_length_said_by = {};
+    /// The rectangle around all of its pixels, where some lie beyond the edges of its picture (Source::extent).
+    std::optional<Box> overscan = {};
 };
 
 /// A source as its host has opened it.
@@ -72,6 +75,8 @@ enum class PixelKind { color, point, vector, value };
 /// A picture before it is solved.
 struct PictureRequest {
     Size size;
+    /// The display window, in pixels of the picture, which is then the data window; where there is none they are the same.
+    std::optional<Box> display = {};
     PixelKind pixels = PixelKind::color;
     std::vector<std::string> channels;  ///< of colour that no source says the channels of: as float
     Attributes says;                    ///< known beforehand: "anamorph:tol", the projection
@@ -79,6 +84,9 @@ struct PictureRequest {
     /// the core has no numbers for.
     std::optional<std::size_t> moves = {};
     std::function<std::unique_ptr<const SolvedPicture>()> solve;
+
+    /// The display window, whether it is another or not.
+    Box shown() const { return display.value_or(Box{0, 0, size.width, size.height}); }
 };
 
 /// How a source is divided into faces.
@@ -166,5 +174,7 @@ void check_color_space(const SourceImage& image, const std::string& name, const 
 
 /// Half the pixels each way, `level` times, rounded down, at least 1; none past the level of one pixel.
 std::optional<Size> level_size(const Size& size, int level);
+/// The display window of a level, to the nearest pixel, of at least one.
+std::optional<Box> level_display(const std::optional<Box>& display, int level);
 
 }  // namespace anamorph

@@ -108,6 +108,7 @@ ParameterTable make_pano_table() {
              "embm-2003:size=64,texel=V8U8 or {\"size\": 64, \"texel\": \"V8U8\"}; by default embm-2003"),
         colorspace("color space to filter in; by default the source's own"),
         output(),
+        flip_v(),
     };
     const ParameterTable of_formula = ray_rows();
     table.insert(table.end(), of_formula.begin(), of_formula.end());
@@ -219,12 +220,13 @@ Orientation read_orientation(const ParameterValues& values) {
     return {values.number("yaw"), values.number("pitch"), values.number("roll")};
 }
 
-ReprojectOptions read_reproject_options(const ParameterValues& values) {
+ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source) {
     ReprojectOptions options;
     options.tol = values.number("tol");
     options.filter = chosen<Filter>(values, "filter");
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
+    options.overscan = source.overscan.has_value();
     return options;
 }
 
@@ -248,7 +250,7 @@ Orientation read_held(const ParameterValues& values) {
 
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
     const TakenSource source = read_source(values, facts);
-    ReprojectOptions options = read_reproject_options(values);
+    ReprojectOptions options = read_reproject_options(values, facts);
     const std::optional<machine::BumpUnit> machine = machine_of(values);
     if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
     return {

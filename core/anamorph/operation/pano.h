@@ -54,7 +54,7 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& source
 Orientation read_held(const ParameterValues& values);
 Chart read_target_chart(const ParameterValues& values, const Chart& source);
 Orientation read_orientation(const ParameterValues& values);
-ReprojectOptions read_reproject_options(const ParameterValues& values);
+ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source);
 
 /// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
 /// none after the last.

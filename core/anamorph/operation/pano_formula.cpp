@@ -114,7 +114,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
     Size size = values.given("size") ? values.extent("size") : natural_size(text, setting, source.chart);
     if (size.height < 0) size.height = size.width;
     setting.picture = size;
-    ReprojectOptions options = read_reproject_options(values);
+    ReprojectOptions options = read_reproject_options(values, facts);
     options.scheme = rows::chosen<Scheme>(values, "scheme");
     const FlatRequest request{source.chart, size,           plan_options(options), options.filter,
                               options.wrap, options.output, saying(source.says())};

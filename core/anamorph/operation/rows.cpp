@@ -194,6 +194,13 @@ Parameter output(const std::vector<Word>& own) {
     return enumeration("output", "color", words, "color, or per pixel: " + meanings_of(words));
 }
 
+Parameter flip_v(const std::string& more) {
+    return toggle(
+        "flip_v", "0",
+        "1: v of the ST-map that output=stmap draws" + more +
+            " goes up, 0 at the lower edge and 1 at the upper one, as Nuke, Gaffer and Natron have it");
+}
+
 Size size_of(const ParameterValues& values, const Size& natural) {
     if (!values.given("size")) return natural;
     Size size = values.extent("size");
@@ -228,7 +235,9 @@ bool has_shared_output(const ParameterValues& values) {
 }
 
 Output chosen_output(const ParameterValues& values) {
-    return has_shared_output(values) ? chosen<Output>(values, "output") : Output::color;
+    if (!has_shared_output(values)) return Output::color;
+    const auto output = chosen<Output>(values, "output");
+    return output == Output::stmap && values.toggle("flip_v") ? Output::stmap_up : output;
 }
 
 }  // namespace anamorph::rows

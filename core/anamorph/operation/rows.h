@@ -65,6 +65,8 @@ Parameter wrap(const std::string& automatic);
 Parameter scheme(const std::vector<Word>& words);
 /// The words that all operations share, then the operation's own.
 Parameter output(const std::vector<Word>& own = {});
+/// `more`: what else than the output it is of.
+Parameter flip_v(const std::string& more = "");
 
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
 /// given.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/geometry/box.h"
 #include "anamorph/geometry/size.h"
 
 namespace anamorph {
@@ -22,12 +23,20 @@ using SideFiles = std::map<std::string, SideFile>;  ///< the side files that wer
 class SideImage {
   public:
     virtual ~SideImage() = default;
-    /// The size of the image as it is seen upright.
+    /// The size of the image as it is seen upright: of its data window.
     virtual Size size() const = 0;
+    /// The display window, counted from the data window's corner.
+    virtual Box display() const { return {0, 0, size().width, size().height}; }
     virtual int channels() const = 0;
+    /// The channel of alpha; -1 where there is none.
+    virtual int alpha() const { return -1; }
     /// Reads the first `count` channels of all pixels, row by row, packed. Throws Error where they cannot be read.
     virtual std::vector<float> read(int count) = 0;
 };
+
+/// Reads the first `count` channels of an image's display window, as read() does. Throws Error, which calls the image `what`,
+/// where a part of the window has no pixels.
+std::vector<float> read_display(SideImage& image, int count, const std::string& what);
 
 /// How a host opens side files.
 class SideFileReader {

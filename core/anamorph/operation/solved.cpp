@@ -33,6 +33,7 @@ class Solved final : public SolvedPicture {
 PixelKind pixels_of(Output output) {
     switch (output) {
         case Output::stmap:
+        case Output::stmap_up:
             return PixelKind::point;
         case Output::error:
         case Output::bound:

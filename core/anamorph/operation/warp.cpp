@@ -54,6 +54,7 @@ ParameterTable make_warp_table() {
              "it needs no mesh"),
         colorspace("color space to filter in; by default the source's own"),
         output({{"folds", Word::kNone, "not 0 where the warp folds"}}),
+        flip_v(", and of the one that mesh names,"),
     };
 }
 
@@ -121,7 +122,32 @@ WarpMap in_fractions(const WarpMap& map, const Size& source, const Size& target)
 
 namespace {
 
-WarpMap read_stmap(const std::string& name, int step, const SideFileReader& reader) {
+/// u and v of each pixel; where alpha is 0 they are NaN.
+std::vector<float> read_uv(SideImage& image) {
+    const int alpha = image.alpha() > 1 ? image.alpha() : 0, channels = alpha > 0 ? alpha + 1 : 2;
+    std::vector<float> pixels = image.read(channels);
+    if (alpha == 0) return pixels;
+    const auto step = static_cast<std::size_t>(channels);
+    const std::size_t count = pixels.size() / step;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float* from = &pixels[i * step];
+        const bool is_hole = from[alpha] == 0;
+        const float u = is_hole ? NAN : from[0], v = is_hole ? NAN : from[1];
+        pixels[2 * i] = u;
+        pixels[2 * i + 1] = v;
+    }
+    pixels.resize(2 * count);
+    pixels.shrink_to_fit();
+    return pixels;
+}
+
+/// How an ST-map is read.
+struct StMapReading {
+    int step;
+    bool flip_v;
+};
+
+WarpMap read_stmap(const std::string& name, const StMapReading& how, const SideFileReader& reader) {
     const std::string what = "ST-map \"" + printable(name) + "\"";
     const std::unique_ptr<SideImage> image = reader.image("mesh", name);
     const Size size = image->size();
@@ -130,19 +156,26 @@ WarpMap read_stmap(const std::string& name, int step, const SideFileReader& read
     if (std::int64_t{size.width} * size.height > kMostStMapVertices)
         throw Error(what + " has " + shape + " pixels: must have at most " +
                     std::to_string(kMostStMapVertices));
-    std::vector<float> uv = image->read(2);
-    if (step == 1) return mesh_from_stmap(std::move(uv), size.width, size.height, name);
-    return mesh_from_stmap(uv.data(), size.width, size.height, 2, std::ptrdiff_t{2} * size.width, step, name);
+    std::vector<float> uv = read_uv(*image);
+    for (std::size_t i = 1; how.flip_v && i < uv.size(); i += 2) uv[i] = 1 - uv[i];
+    WarpMap map = how.step == 1 ? mesh_from_stmap(std::move(uv), size.width, size.height, name)
+                                : mesh_from_stmap(uv.data(), size.width, size.height, 2,
+                                                  std::ptrdiff_t{2} * size.width, how.step, name);
+    if (!(image->display() == Box{0, 0, size.width, size.height}))
+        std::get<ControlMesh>(map.shape).display = image->display();
+    return map;
 }
 
 /// A mesh or pairs of points from text (.json, .csv), or a mesh from every `step`-th pixel of an ST-map: any
 /// image, u in its first channel, v in its second.
-std::shared_ptr<const WarpMap> read_mesh(const SideFile& file, int step, const SideFileReader& reader) {
+std::shared_ptr<const WarpMap> read_mesh(const SideFile& file, const StMapReading& how,
+                                         const SideFileReader& reader) {
     const bool text = text_file::ends_with(file.name, ".json");
-    if (text && step != 1) throw Error("step", std::to_string(step), "must be given with ST-maps only");
-    return read_once<WarpMap>(file, "mesh " + std::to_string(step), [&] {
-        return text ? parse_warp_file(reader.text(file.name), file.name)
-                    : read_stmap(file.name, step, reader);
+    if (text && how.step != 1)
+        throw Error("step", std::to_string(how.step), "must be given with ST-maps only");
+    const std::string kind = "mesh " + std::to_string(how.step) + (how.flip_v ? " flipped" : "");
+    return read_once<WarpMap>(file, kind, [&] {
+        return text ? parse_warp_file(reader.text(file.name), file.name) : read_stmap(file.name, how, reader);
     });
 }
 
@@ -169,9 +202,10 @@ std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const Operat
     const bool has_none = !has_mesh && !has_points;
     if (has_none && !request.program)
         throw Error("mesh is not given: must be a mesh (.json) or an ST-map (an image), or points be given");
-    std::shared_ptr<const WarpMap> map = has_none   ? unmoved()
-                                         : has_mesh ? read_mesh(mesh->second, request.step, input.reader)
-                                                    : read_points(points->second, input.reader);
+    std::shared_ptr<const WarpMap> map =
+        has_none   ? unmoved()
+        : has_mesh ? read_mesh(mesh->second, {request.step, input.values.toggle("flip_v")}, input.reader)
+                   : read_points(points->second, input.reader);
     if (has_points && std::holds_alternative<ControlMesh>(map->shape))
         throw Error("points", printable(points->second.name), "the file holds a mesh: must be given as mesh");
     if (request.direction) {
@@ -191,11 +225,12 @@ class Warps final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         const std::optional<Size> size = level_size(m_request.target, level);
-        if (!size) return {};
+        if (!size || (level > 0 && has_holes())) return {};
         WarpRequest request = m_request;
         request.target = *size;
         PictureRequest picture;
         picture.size = *size;
+        picture.display = level_display(m_request.display, level);
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         if (!request.machine) picture.says = {{"anamorph:tol", request.options.tol}};
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
@@ -213,9 +248,38 @@ class Warps final : public Pictures {
     }
 
   private:
+    /// Between pixels that come from nowhere there is no coarser one.
+    bool has_holes() const {
+        const auto* mesh = std::get_if<ControlMesh>(&m_map->shape);
+        return mesh && mesh->samples && mesh->samples->holes > 0;
+    }
+
     WarpRequest m_request;
     std::shared_ptr<const WarpMap> m_map;
 };
+
+std::string text_of(const Size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// An ST-map is as large as its picture, and so are its windows.
+void take_windows(const ControlMesh& mesh, const ParameterValues& values, WarpRequest& request) {
+    const Size data{mesh.width, mesh.height};
+    if (!mesh.display) {
+        if (mesh.direction == Direction::pull) request.target = warp_target(values, data);
+        return;
+    }
+    const Size shown{mesh.display->width(), mesh.display->height()};
+    const std::string why =
+        " of an ST-map of " + text_of(data) + " pixels with a display window of " + text_of(shown);
+    if (mesh.direction == Direction::push) throw Error("direction", "push", "must be pull" + why);
+    if (request.options.amount != 1)
+        throw Error("amount", shortest(request.options.amount), "must be 1" + why);
+    if (const Size asked = warp_target(values, shown); !(asked == shown))
+        throw Error("size", text_of(asked), "must be " + text_of(shown) + why);
+    request.target = data;
+    request.display = mesh.display;
+}
 
 const char* const kExampleMesh = R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [
     [0, 0], [0.5, 0], [1, 0],  [0, 0.5], [0.61, 0.42], [1, 0.5],  [0, 1], [0.5, 1], [1, 1]]})";
@@ -224,10 +288,8 @@ std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
     WarpRequest request = read_warp_request(input.values, input.sources[0].size());
     request.program = read_shader(input);
     const std::shared_ptr<const WarpMap> map = read_map(request, input);
-    // An ST-map is as large as its picture.
     const auto* mesh = std::get_if<ControlMesh>(&map->shape);
-    if (mesh && mesh->width > 0 && mesh->direction == Direction::pull)
-        request.target = warp_target(input.values, {mesh->width, mesh->height});
+    if (mesh && mesh->width > 0) take_windows(*mesh, input.values, request);
     return std::make_unique<Warps>(request, map);
 }
 

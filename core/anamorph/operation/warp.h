@@ -16,6 +16,7 @@ const Operation& warp_operation();
 /// A warp as asked for, but for the mesh itself.
 struct WarpRequest {
     Size source, target;
+    std::optional<Box> display = {};  ///< of the target, where that is more, or less, than it
     MeshWarpOptions options;
     int step = 1;                        ///< of an ST-map: every step-th pixel is a vertex
     std::optional<Direction> direction;  ///< unless as the mesh says

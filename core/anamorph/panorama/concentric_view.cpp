@@ -56,7 +56,7 @@ Picture::Map panorama_of(const Panorama& view, const ConcentricStack& stack, int
 
 Picture mosaic_picture(const Panorama& view, const ConcentricStack& stack, const ReprojectOptions& options,
                        std::optional<int> circle) {
-    if (options.output == Output::stmap && !circle) circle = stack.circles / 2;
+    if (is_stmap(options.output) && !circle) circle = stack.circles / 2;
     Picture picture;
     picture.filter = options.filter;
     picture.output = options.output;

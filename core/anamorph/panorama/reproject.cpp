@@ -11,7 +11,7 @@ PlanOptions plan_options(const ReprojectOptions& options) {
     PlanOptions plan;
     plan.scheme = options.scheme;
     plan.tol = options.tol;
-    plan.cull = ends_at_edges(options.wrap, options.output);
+    plan.cull = ends_at_edges(options.wrap, options.output) && !options.overscan;
     plan.across_seam = options.wrap == Wrap::automatic;
     return plan;
 }

@@ -17,6 +17,8 @@ struct ReprojectOptions {
     Filter filter = Filter::antialias;
     Wrap wrap = Wrap::automatic;
     Output output = Output::color;
+    /// Has the source texels beyond the edges of its picture (Source::extent) that are to be drawn?
+    bool overscan = false;
 };
 
 /// How the map of a reprojection is approximated.

@@ -264,8 +264,9 @@ void Drape::put_values(const Spot& spot, int x, int y, float* to) const {
     }
     switch (m_options.output) {
         case Output::stmap:
+        case Output::stmap_up:
             to[0] = seen ? static_cast<float>(spot.u) : -1;
-            to[1] = seen ? static_cast<float>(spot.v) : -1;
+            to[1] = seen ? static_cast<float>(v_of(m_options.output, spot.v)) : -1;
             return;
         case Output::error:
             *to = seen ? static_cast<float>(landing_error(spot, x, y)) : 0;
