@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a host lends threads.
+// The loop by which a host lends threads.
 #pragma once
 
 #include <cstdint>

@@ -10,11 +10,11 @@
 
 namespace anamorph {
 
-/// Rooms that are in no use. Thread safe.
+/// A pool of rooms that are in no use. Thread safe.
 template <class Room>
 class RoomPool {
   public:
-    /// As it was left, or what `make` makes.
+    /// Takes a room as it was left, or the one that `make` makes.
     template <class Make>
     std::unique_ptr<Room> take(const Make& make) {
         {
@@ -30,7 +30,7 @@ class RoomPool {
     std::unique_ptr<Room> take() {
         return take([] { return std::make_unique<Room>(); });
     }
-    /// Where there is no memory to remember it by, it goes.
+    /// Gives a room back; where there is no memory to remember it by, it is freed.
     void give_back(std::unique_ptr<Room> room) noexcept try {
         const std::lock_guard lock(m_mutex);
         m_free.push_back(std::move(room));

@@ -25,13 +25,15 @@ class FileRows {
   public:
     using Opener = std::function<std::unique_ptr<OIIO::ImageInput>()>;
 
-    /// What is kept of each pixel: so many numbers of a type, decoded as `format`; unknown: as the file stores them.
+    /// The numbers that are kept of each pixel: so many of a type, decoded as `format`; unknown: as the file
+    /// stores them.
     struct Pixels {
         PixelType type;
         int channels;
         OIIO::TypeDesc format;
     };
-    /// `file`: its name. `spec`: of the file when it was opened. Throws std::bad_alloc.
+    /// Reads nothing yet. `file`: its name. `spec`: that of the file when it was opened. Throws
+    /// std::bad_alloc.
     FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, const Pixels& pixels);
     ~FileRows();
     FileRows(const FileRows&) = delete;
@@ -57,11 +59,11 @@ class FileRows {
     const int m_unit;  ///< rows that are decoded together: whole tiles, if there are any
     const Pages m_pages;
     const ConstImageView m_view;
-    /// Rows that are there. The first is set before the end, so that a reader who sees the end sees it.
+    /// The rows that are decoded. The first is set before the end, so that a reader who sees the end sees it.
     std::atomic<int> m_first{std::numeric_limits<int>::max()}, m_end{0};
     std::mutex m_mutex;
-    std::unique_ptr<OIIO::ImageInput> m_input;  ///< kept open where more rows may follow,
-    int m_next = 0;                             ///< from this one on
+    std::unique_ptr<OIIO::ImageInput> m_input;  ///< kept open where more rows may follow, from m_next on
+    int m_next = 0;                             ///< the row that m_input decodes next
     std::string m_failure;                      ///< why nothing more can be decoded
 };
 

@@ -24,7 +24,7 @@
 
 namespace anamorph {
 
-/// A plain pointer before OpenImageIO 3.0, a shared one since.
+/// A pointer to an ImageCache: a plain one before OpenImageIO 3.0, a shared one since.
 using ImageCacheRef = decltype(OIIO::ImageCache::create(true));
 
 /// The core's type for an OpenImageIO type: itself, or float.
@@ -44,7 +44,7 @@ bool loses_values(const OIIO::ImageSpec& spec);
 /// The data window inside the panorama: from the display window, or from GPano's cropped area where the image
 /// has one. An environment of six faces that is as high as these is whole: OpenEXR's display window is one.
 struct Frame {
-    int width = 0, height = 0;  ///< of the panorama
+    int width = 0, height = 0;  ///< size of the panorama
     Box data;                   ///< relative to the panorama's corner
 
     /// The panorama and the data window.
@@ -70,22 +70,22 @@ std::string reason_of(std::string message, const std::string& name, const std::s
 /// opened.
 class CacheSource final : public Source {
   public:
-    /// Sizes and metadata as the cache knows them.
+    /// Opens a file with sizes and metadata as the cache knows them.
     CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level);
 
-    /// The spec of a MIP level; one without a format where there is none.
+    /// A function that gives the spec of a MIP level; one without a format where there is none.
     using SpecOf = std::function<OIIO::ImageSpec(int level)>;
-    /// A file that the cache is asked for as `name` and that messages call `shown`; sizes and metadata from
-    /// `spec_of`, or from the file itself. Neither touches a lock of the cache: a cache that is opening one
-    /// of its files would otherwise wait for another, which may wait for the first to be closed.
+    /// Opens a file that the cache is asked for as `name` and that messages call `shown`; sizes and metadata
+    /// from `spec_of`, or from the file itself. Neither touches a lock of the cache: a cache that is opening
+    /// one of its files would otherwise wait for another, which may wait for the first to be closed.
     CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown,
                 const SpecOf& spec_of);
     CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown);
 
     const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
-    /// Of all levels that serve, as the file says.
+    /// The specs of all levels that serve, as the file has them.
     std::vector<OIIO::ImageSpec> specs() const;
-    /// What the last failed read failed of.
+    /// The reason that the last failed read failed.
     std::string error() const;
 
     PixelType type() const noexcept override { return m_type; }
@@ -103,14 +103,14 @@ class CacheSource final : public Source {
     void keep_first_level() { m_levels.resize(1); }
     /// Has a file without tiles decode its rows once, past the cache; of other files nothing changes.
     void keep_rows();
-    /// Packed pixels of a box of level 0, in the format of the file. Throws Error.
+    /// A function that reads packed pixels of a box of level 0, in the format of the file. Throws Error.
     using ReadStored = std::function<void(const Box& box, std::byte* pixels)>;
     /// Hands out stored_pixels() of level 0 from now on: by `read`, or past the cache, which has float only.
     void keep_stored(ReadStored read = {});
 
   private:
     struct Level {
-        OIIO::ImageSpec spec;  ///< the file's
+        OIIO::ImageSpec spec;  ///< spec of the file
         Frame frame;
     };
     CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
@@ -139,7 +139,7 @@ class CacheSource final : public Source {
 /// Pixels that an ImageBuf holds in memory; read in place where type and window allow it. Keeps a reference.
 class BufferSource final : public Source {
   public:
-    /// `stored`: as stored_pixels().
+    /// Takes an image. `stored`: are its pixels handed out as stored_pixels()?
     explicit BufferSource(const OIIO::ImageBuf& image, bool stored = false);
 
     PixelType type() const noexcept override { return m_type; }
@@ -157,7 +157,7 @@ class BufferSource final : public Source {
     Frame m_frame;
     PixelType m_type;
     int m_channels;
-    OIIO::TypeDesc m_format;  ///< that pixels are handed out in
+    OIIO::TypeDesc m_format;  ///< format that pixels are handed out in
     int m_alpha;
     std::optional<ConstImageView> m_view;
 };
@@ -165,9 +165,9 @@ class BufferSource final : public Source {
 /// The way to a colour space to filter in, and back.
 class WorkingSpace {
   public:
-    /// `name`: a colour space or a role of OpenColorIO's configuration ($OCIO, or OpenImageIO's own). Throws
-    /// Error when it is unknown or when the image does not say its own. Null when there is nothing to
-    /// convert.
+    /// Makes the way to a colour space. `name`: a colour space or a role of OpenColorIO's configuration
+    /// ($OCIO, or OpenImageIO's own). Throws Error when it is unknown or when the image does not say its own.
+    /// Null when there is nothing to convert.
     static std::shared_ptr<const WorkingSpace> make(const std::string& name, const OIIO::ImageSpec& spec);
 
     void to_working(float* pixels, int width, int height) const { convert(*m_there, pixels, width, height); }
@@ -178,7 +178,7 @@ class WorkingSpace {
 
     OIIO::ColorProcessorHandle m_there, m_back;
     int m_channels = 0;
-    int m_alpha = -1;  ///< of colour that is multiplied by it
+    int m_alpha = -1;  ///< channel of alpha that colour is multiplied by
 };
 
 /// A source as float in a working space. Keeps a reference to the base.

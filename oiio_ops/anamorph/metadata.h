@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an image says of itself, and what a picture made of it may still say.
+// The metadata of an image, and those that a picture made of it may still have.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -11,11 +11,11 @@
 
 namespace anamorph {
 
-/// What an operation may know of an upright image.
+/// The facts that an operation may know of an upright image.
 SourceImage source_image(const OIIO::ImageSpec& spec);
 
-/// The panorama's size, its projection as GPano, OpenEXR's envmap, a texture's format or a picture of ours names it, and
-/// the focal length as Exif has it.
+/// The facts of a panorama: its size, its projection as GPano, OpenEXR's envmap, a texture's format or a
+/// picture of ours names it, and the focal length as Exif has it.
 SourceFacts facts_of(const OIIO::ImageSpec& spec);
 
 /// The options of a call as assignments: names with `prefix` (taken off), all names without one. Numbers are
@@ -36,7 +36,7 @@ bool moves_stored(const PictureRequest& picture, const std::vector<OIIO::ImageSp
 /// Sets attributes; numbers that are no integers as type float.
 void add_attributes(OIIO::ImageSpec& spec, const Attributes& attributes);
 
-/// Those of ours, anamorph:*.
+/// The attributes that are ours, anamorph:*.
 Attributes own_attributes(const Attributes& attributes);
 
 }  // namespace anamorph

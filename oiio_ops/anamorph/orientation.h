@@ -17,14 +17,15 @@ namespace anamorph {
 struct StoredOrder {
     bool swaps = false, mirrors_x = false, mirrors_y = false;
 
-    /// Orientation without a meaning is 1.
+    /// The order of a value of the tag; one without a meaning is 1.
     explicit StoredOrder(int orientation);
     explicit StoredOrder(const OIIO::ImageSpec& spec)
         : StoredOrder(spec.get_int_attribute("Orientation", 1)) {}
 
     bool is_upright() const { return !swaps && !mirrors_x && !mirrors_y; }
     Size upright_size(const Size& stored) const;
-    /// Where upright pixels are stored, and the other way; `stored` is the size of the stored image.
+    /// The box where upright pixels are stored; upright_box() is the way back. `stored` is the size of the
+    /// stored image.
     Box stored_box(const Box& upright, const Size& stored) const;
     Box upright_box(const Box& box, const Size& stored) const;
     /// Copies packed pixels of `pixel` bytes, `from` holding those of a stored box that become those of

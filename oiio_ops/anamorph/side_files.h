@@ -6,8 +6,8 @@
 
 namespace anamorph {
 
-/// Files of the file system, and whatever images OpenImageIO reads; these past any cache, on the calling
-/// thread alone.
+/// Reads files of the file system, and whatever images OpenImageIO reads; these past any cache, on the
+/// calling thread alone.
 const SideFileReader& side_file_reader();
 
 }  // namespace anamorph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands between images and a picture drawn from them: turned upright, in the working colour space that
+// The stages between images and a picture drawn from them: turned upright, in the working colour space that
 // was asked for, in a pyramid.
 #pragma once
 
@@ -18,17 +18,17 @@ namespace anamorph {
 /// The colour space to filter in that was asked for; empty where no colour is drawn or none can be asked for.
 std::string filtering_space(const ParameterValues& values, PixelKind pixels);
 
-/// One image with all of that. Reading is thread safe.
+/// An image with all of these stages. Reading is thread safe.
 class SourceStack {
   public:
-    /// `spec`: of the image as it is stored. `colorspace` may be empty. Throws Error.
+    /// Builds the stages. `spec`: that of the image as it is stored. `colorspace` may be empty. Throws Error.
     SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const SourceFaces& faces,
                 const std::string& colorspace);
     ~SourceStack();
 
     const Source& top() const { return *m_top; }
     const WorkingSpace* space() const { return m_space.get(); }
-    /// What the last failed read failed of; empty where none did.
+    /// The reason that the last failed read failed; empty where none did.
     std::string error() const;
 
   private:

@@ -17,10 +17,10 @@ namespace anamorph {
 /// before they rename (NAME.XXXXXXXX.temp.anabuf).
 void store_buffer(const std::string& name, std::shared_ptr<const OIIO::ImageBuf> image);
 
-/// Counts how often a name was stored; 0: never.
+/// The number of times that a name was stored.
 std::int64_t buffer_generation(const std::string& name);
 
-/// Throws Error when nothing was stored under the name.
+/// Opens a stored image. Throws Error when nothing was stored under the name.
 std::shared_ptr<const Content> open_buffer(const std::string& name);
 
 }  // namespace anamorph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an open input shows: the pixels of one or more subimages and MIP levels, whoever makes them.
+// The content of an open input: the pixels of one or more subimages and MIP levels, whoever makes them.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -10,7 +10,7 @@
 
 namespace anamorph {
 
-/// Thread safe.
+/// The pixels and headers that an input shows. Thread safe.
 class Content {
   public:
     virtual ~Content() = default;
@@ -18,8 +18,8 @@ class Content {
     virtual int subimages() const { return 1; }
     virtual int levels(int subimage) const = 0;
     virtual const OIIO::ImageSpec& spec(int subimage, int level) const = 0;
-    /// The pixels of `box`, from the corner of the data window, packed, in the spec's format. The box may
-    /// reach over the right and lower edge (0 there). Throws Error.
+    /// Reads the pixels of `box`, from the corner of the data window, packed, in the spec's format. The box
+    /// may reach over the right and lower edge (0 there). Throws Error.
     virtual void read(int subimage, int level, const Box& box, std::byte* pixels) const = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes as files and names: where the values come from, and which files they lead to.
+// Recipes as files and names: the source of their values, and the files that they lead to.
 #pragma once
 
 #include <map>
@@ -35,22 +35,21 @@ const Operation* operation_of(std::string_view name);
 struct Recipe {
     const Operation* operation;
     ParameterValues values;
-    /// The sources and side files by key, each with the folder it stands in. Identities tell states of the
-    /// file, and of all that it is made of where it is a recipe, apart: names, times of writing (ns), sizes.
+    /// The sources and side files by key, each with the folder it stands in. Identities tell apart the states
+    /// of the file, and of all that it is made of where it is a recipe: names, times of writing (ns), sizes.
     SideFiles files;
     std::vector<std::string> linked_images;  ///< keys of files that are drawn as well, in their order
-    std::string identity;  ///< the same text, the same picture: values, and identities of files
+    std::string identity;  ///< values, and identities of files: where it is the same, pictures are
 };
 
 /// Recipes as one reading from outside finds them: no file of theirs is read twice, nor looked at twice.
 class RecipeReader {
   public:
-    /// The recipe file if there is one, overridden by the name's arguments, overridden by `config`. A
-    /// relative
-    /// file name in a file is relative to that file's folder, else to the working folder; the first source is
-    /// by default the recipe's name without its extension; a
-    /// name may also be that of a file that an operation draws as it stands. Follows the recipes that the recipe reads from.
-    /// Throws Error, also on a cycle, and beyond kMaxDepth and kMaxRecipes.
+    /// Loads the recipe file if there is one, overridden by the name's arguments, overridden by `config`. A
+    /// relative file name in a file is relative to that file's folder, else to the working folder; the first
+    /// source is by default the recipe's name without its extension; a name may also be that of a file that
+    /// an operation draws as it stands. Follows the recipes that the recipe reads from. Throws Error, also on
+    /// a cycle, and beyond kMaxDepth and kMaxRecipes.
     Recipe load(const std::string& name, const std::vector<Assignment>& config = {});
 
   private:
@@ -58,15 +57,15 @@ class RecipeReader {
     const std::string& identity_of(const SideFile& file);
     void visit(const SideFile& file);
 
-    std::map<std::string, Recipe> m_nested;           ///< by name, those that others read from
-    std::map<std::string, std::string> m_identities;  ///< of files, by name
-    std::map<std::string, std::string> m_states;      ///< of files, by name
-    // Of the walk through what one file is made of:
+    std::map<std::string, Recipe> m_nested;           ///< recipes that others read from, by name
+    std::map<std::string, std::string> m_identities;  ///< identities of files, by name
+    std::map<std::string, std::string> m_states;      ///< states of files, by name
+    // Members of the walk through what one file is made of:
     std::vector<std::string> m_way;  ///< the recipes that lead to the file
     std::set<std::string> m_seen;
     std::string m_identity;
 };
-inline constexpr int kMaxDepth = 16;     ///< recipes that read from each other, one from the next
-inline constexpr int kMaxRecipes = 100;  ///< that one recipe reads from, directly or not
+inline constexpr int kMaxDepth = 16;     ///< the most recipes that read from each other, one from the next
+inline constexpr int kMaxRecipes = 100;  ///< the most recipes that one reads from, directly or not
 
 }  // namespace anamorph

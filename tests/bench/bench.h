@@ -14,7 +14,7 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct Settings {
     std::string csv, op = "all", case_name, scheme;
-    int size = 2048;  ///< of the picture, pixels each way
+    int size = 2048;  ///< side of the picture in pixels
     int threads = 1;
     int rounds = 15;
     bool bounds = false;     ///< report bounds over true errors instead of times
@@ -24,7 +24,7 @@ struct Settings {
     bool wants_scheme(const std::string& name) const { return lists(scheme, name); }
 
   private:
-    /// Is it one of several, a,b,c? All are where there are none.
+    /// Is a word one of several, a,b,c? All are where these are empty.
     static bool lists(const std::string& several, const std::string& one) {
         return several.empty() || ("," + several + ",").find("," + one + ",") != std::string::npos;
     }
@@ -45,7 +45,7 @@ struct Row {
     double ratio_to_exact = 0;  ///< how many times faster than the plain double loop of the same case
     Accuracy error;
     double bound_px = kNone, exact_fraction = kNone;
-    double cycles = kNone, frames_per_second = kNone;  ///< of a machine that is modelled
+    double cycles = kNone, frames_per_second = kNone;  ///< those of a machine that is modelled
     bool one_tap = true;  ///< does each pixel come from one point, not from an average? (not in the CSV)
 };
 
@@ -59,9 +59,9 @@ struct Target {
 struct Report {
     std::vector<Row> rows;
     std::vector<Target> targets;
-    std::vector<std::string> failures;  ///< of the checks that the benchmark makes of itself
+    std::vector<std::string> failures;  ///< failures of the checks that the benchmark makes of itself
 
-    /// Keeps the row and prints it.
+    /// Keeps a row and prints it.
     void add(const Row& row);
     /// The row of a case and scheme (with this tolerance, unless NaN, on so many threads, unless 0), or null.
     const Row* find(const std::string& case_name, const std::string& scheme, double tol_px = kNone,

@@ -5,8 +5,8 @@
 
 namespace anamorph::bench {
 
-/// The machine of 1987 beside plain drapes, on a screen of side x side; none where that is more than settings.size, but for
-/// the smallest.
+/// Measures the machine of 1987 beside plain drapes, on a screen of side x side; none where that is more than
+/// settings.size, but for the smallest.
 void measure_blocks(const Settings& settings, Report& report, int side);
 
 }  // namespace anamorph::bench

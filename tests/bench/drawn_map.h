@@ -21,7 +21,7 @@ struct DrawnMap {
     std::function<std::shared_ptr<const BlockMap>(const PlanOptions&)> plan;
 };
 
-/// The defaults, with this tolerance.
+/// The default options, with this tolerance.
 PlanOptions options_of(double tol);
 
 /// Draws maps of one size, or only plans them.
@@ -30,7 +30,7 @@ class MapDrawing {
     explicit MapDrawing(const Settings& settings);
 
     void draw(const DrawnMap& map, const PlanOptions& options);
-    /// Draws by blocks that are there.
+    /// Draws by blocks that are made already.
     void draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>& blocks);
     void plan(const DrawnMap& map, const PlanOptions& options);
 
@@ -42,12 +42,12 @@ class MapDrawing {
     Buffer m_texels, m_picture;
 };
 
-/// What is to be timed, and the row of the table that says so; the times are not in it yet.
+/// A drawing that is to be timed, and its row of the table; the times are not in it yet.
 struct TimedRow {
     Row row;
     std::function<void()> draw;
 };
-/// Bound and exact fraction of a map's blocks, in a row of the table.
+/// A row of the table with the bound and the exact fraction of a map's blocks.
 Row row_of(const Settings& settings, const DrawnMap& map, const PlanOptions& options);
 /// Times all of them in the same rounds, and adds their rows.
 void time_all(const Settings& settings, Report& report, std::vector<TimedRow>& timed);

@@ -13,12 +13,12 @@ namespace anamorph {
 
 class FeatureMesh final : public FeatureBlocks {
   public:
-    /// `cells` each way, those near a line cut `levels` times into four; `shapes` become the layers. The map
-    /// outlives this.
+    /// Makes a grid of `cells` each way, those near a line cut `levels` times into four; `shapes` become the
+    /// layers. The map outlives this.
     FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes);
     ~FeatureMesh() override;
 
-    /// How often the map was evaluated: once for each vertex.
+    /// The number of times that the map was evaluated: once for each vertex.
     std::int64_t evaluations() const;
 
     void computed_row(const Block& block, int row, int begin, int end, float* x,

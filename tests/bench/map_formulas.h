@@ -17,7 +17,7 @@ struct TextOf {
     TextMap map(int side) const;
 };
 
-/// Views of a whole sphere, 4 pictures wide.
+/// A view of a whole sphere, 4 pictures wide.
 struct SphereView {
     Panorama map;
     TextOf text;
@@ -25,7 +25,7 @@ struct SphereView {
 SphereView straight_view(int side);
 SphereView fisheye_view(int side);
 
-/// Takes a distortion off a picture of 90 degrees.
+/// A map that takes a distortion off a picture of 90 degrees.
 struct LensView {
     LensMap map;
     TextOf text;
@@ -33,7 +33,7 @@ struct LensView {
 LensView lens_view(int side);
 
 TextOf swirl_view(int side);
-/// The same swirl the other way about, where pixels of the source go.
+/// The swirl of swirl_view() by its inverse: where pixels of the source go.
 PushedMap pushed_swirl(int side);
 
 }  // namespace anamorph::bench

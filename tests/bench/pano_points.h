@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in the source each pixel of a view is read: by the exact map in long double, and by a plan's blocks.
+// The points of the source where the pixels of a view are read: by the exact map in long double, and by a
+// plan's blocks.
 #pragma once
 
 #include <vector>
@@ -11,10 +12,10 @@
 
 namespace anamorph::bench {
 
-/// One point a pixel, row by row; NaN where there is none.
+/// Source points, one a pixel, row by row; NaN where there is none.
 using Points = std::vector<Point<double>>;
 
-/// Panorama::exact read with long double.
+/// The points that Panorama::exact finds with long double.
 Points true_points(const Panorama& map, const ParallelFor& parallel_for);
 
 /// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as block.h states
@@ -70,17 +71,17 @@ void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) 
     }
 }
 
-/// The points that a plan leads to.
+/// The points that a plan leads the pixels to.
 Points plan_points(const PanoramaPlan& plan, const ParallelFor& parallel_for);
 
-/// Distance of two source points; a turn apart is the same where the source closes on itself.
+/// The distance of two source points; a turn apart is the same where the source closes on itself.
 double distance(const Chart& source, const Point<double>& a, const Point<double>& b);
 
 /// Does a bilinear filter at this point read texels of the source image only?
 bool well_inside(const Chart& source, const Point<double>& p);
 
-/// Distances for all pixels whose true point lies in the source image. A pixel that has a true point there
-/// but none in `used` counts as infinite.
+/// The distances for all pixels whose true point lies in the source image. A pixel that has a true point
+/// there but none in `used` counts as infinite.
 std::vector<float> distances(const Chart& source, const Points& used, const Points& truth);
 
 }  // namespace anamorph::bench

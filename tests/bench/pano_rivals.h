@@ -21,12 +21,12 @@ namespace anamorph::bench {
 struct PlainView {
     PlainView(const Panorama& map, const Orientation& orientation);
 
-    /// The rows of the face that a row stands in, from 0.
+    /// The row of its face that row j is, from 0.
     int row_of_face(int j) const { return j % (height / faces); }
-    /// The source's ray of a pixel is `rotation_of` its row times the target's; row by row.
+    /// The rotation of a row, row by row: the source's ray of a pixel is that times the target's ray.
     const double* rotation_of(int j) const { return rotation[j / (height / faces)]; }
 
-    /// Of a height in the plane of an equirectangular or Mercator picture.
+    /// The latitude of a height in the plane of an equirectangular or Mercator picture.
     double latitude(double y) const { return target == Projection::mercator ? std::atan(std::sinh(y)) : y; }
 
     bool cylinder;
@@ -49,15 +49,15 @@ void draw_double(const PlainView& view, const Texel* source, Texel* picture, con
 struct PaddedSource {
     PaddedSource(const PlainView& view, const float* source, const ParallelFor& parallel_for);
 
-    static constexpr int kColumns = 32, kRows = 2;  ///< of the border, at each side
+    static constexpr int kColumns = 32, kRows = 2;  ///< size of the border at each side
     Buffer texels;
     std::ptrdiff_t row_floats;
-    const float* origin;  ///< of texel (0, 0)
+    const float* origin;  ///< address of texel (0, 0)
 };
 constexpr int kSimdTileHeight = 32;
 void draw_simd_exact(const PlainView& view, const PaddedSource& source, float* picture,
                      const ParallelFor& parallel_for);
-/// The source points it uses, pixel centres at + 0.5, row by row.
+/// The source points that draw_simd_exact() uses, pixel centres at + 0.5, row by row.
 std::vector<Point<float>> simd_exact_points(const PlainView& view);
 std::string simd_target();
 
@@ -71,7 +71,7 @@ class OpenCv {
 
     void compute_map();
     void remap();
-    /// With the map in fixed point, as cv::convertMaps makes it of the last one computed.
+    /// Puts the last map that was computed into fixed point, as cv::convertMaps does, for remap_fixed().
     void fix_map();
     void remap_fixed();
 

@@ -12,20 +12,21 @@ namespace anamorph::bench {
 
 using SceneTriangles = std::vector<std::array<glm::dvec3, 3>>;
 
-/// What VTK gives the vertices of a scene.
+/// The texture coordinates that VTK gives the vertices of a scene.
 struct VertexRival {
     std::string scheme;
     std::function<void()> run;
-    /// How far off what it gives is, interpolated across triangles, in texels of its picture: at the places within triangles
-    /// that `shares` are weights of.
+    /// The error of what it gives, interpolated across triangles, in texels of its picture: at the places
+    /// within triangles that `shares` are weights of.
     std::function<Accuracy(const std::vector<std::array<double, 3>>& shares)> accuracy;
 };
 
-/// vtkTextureMapToSphere, of a picture of width x width / 2, and vtkProjectedTexture, of one of 90 degrees whose middle has as
-/// many texels to a degree; none where VTK was not found. They last as long as the scene.
+/// The rivals vtkTextureMapToSphere, of a picture of width x width / 2, and vtkProjectedTexture, of one of 90
+/// degrees whose middle has as many texels to a degree; none where VTK was not found. They last as long as
+/// the scene.
 std::vector<VertexRival> vertex_rivals(const SceneTriangles& scene, const ProjectorPose& pose, int width);
 
-/// Views of concentric mosaics.
+/// Measures views of concentric mosaics.
 void run_mosaics(const Settings& settings, Report& report);
 
 }  // namespace anamorph::bench

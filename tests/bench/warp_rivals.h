@@ -22,7 +22,7 @@ struct Rival {
     std::function<Point<double>(int x, int y)> point;
 };
 
-/// What the rivals read and write. `map` holds the source points of all pixels, row by row.
+/// The pictures that the rivals read and write. `map` holds the source points of all pixels, row by row.
 struct RivalTask {
     const Mesh* mesh;
     const std::vector<Point<double>>* map;
@@ -31,7 +31,7 @@ struct RivalTask {
     int threads;
 };
 
-/// Those that are installed.
+/// The rivals that are installed.
 std::vector<Rival> warp_rivals(const RivalTask& task);
 
 }  // namespace anamorph::bench

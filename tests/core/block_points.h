@@ -9,12 +9,12 @@
 
 namespace anamorph::test {
 
-/// By a polynomial, or direct.
+/// Does a block give its pixels points: by a polynomial, or direct?
 inline bool has_points(const Block& block) {
     return block.kind != Block::Kind::exact && block.kind != Block::Kind::outside;
 }
 
-/// Row j of a block; nothing of one that has none.
+/// The points of row j of a block; a block may have none.
 class BlockRow {
   public:
     BlockRow(const BlockMap& map, const Block& block, int j) : m_block(block) {
@@ -24,7 +24,7 @@ class BlockRow {
         else
             block_row(map, block, block.box, j, m_x, m_y);
     }
-    /// Of pixel i of the picture.
+    /// The point of pixel i of the picture.
     Point<double> at(int i) const {
         const int k = i - m_block.box.x0;
         if (in_double(m_block)) return m_points.at(k, 0);

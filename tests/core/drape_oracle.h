@@ -57,7 +57,7 @@ inline Vector oracle_surface(const std::string& name, const surface::SurfaceShap
     return {x, y, s.amplitude * std::sin(waves * round - phase)};
 }
 
-/// Where a camera sees a point, in pixels from the corner of the screen, and how far ahead.
+/// The place where a camera sees a point, in pixels from the corner of the screen, and the depth ahead.
 struct OracleSight {
     Real x, y, ahead;
 };

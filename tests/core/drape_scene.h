@@ -18,7 +18,7 @@ inline std::size_t number_of(const std::string& surface) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), surface) - names.begin());
 }
 
-/// A surface, and from where it is seen.
+/// A surface, and the camera that sees it.
 struct Scene {
     std::string surface = "plane";
     surface::SurfaceShape shape = {};
@@ -26,10 +26,10 @@ struct Scene {
     Size screen = {160, 120};
     std::vector<Deformation> deformations = {};
     Size picture = {64, 64};
-    std::shared_ptr<const surface::DrapedSurface> own = {};  ///< in place of `surface`
+    std::shared_ptr<const surface::DrapedSurface> own = {};  ///< a surface in place of `surface`
 };
 
-/// What a scene shows.
+/// Draws what a scene shows.
 class Shown {
   public:
     explicit Shown(const Scene& scene, surface::DrapeOptions options = {})

@@ -7,8 +7,8 @@
 
 namespace anamorph {
 
-/// visit(shape, block, points) for the blocks of a region, place by place and layer by layer; those of exact
-/// blocks have no points.
+/// Calls visit(shape, block, points) for the blocks of a region, place by place and layer by layer; those of
+/// exact blocks have no points.
 template <class Visit>
 void each_feature_block(const FeatureBlocks& map, std::int64_t region, const Visit& visit) {
     const auto layers = static_cast<std::size_t>(map.layers());
@@ -22,7 +22,7 @@ void each_feature_block(const FeatureBlocks& map, std::int64_t region, const Vis
     }
 }
 
-/// The same for all regions.
+/// Calls visit(shape, block, points) for the blocks of all regions.
 template <class Visit>
 void each_feature_block(const FeatureBlocks& map, const Visit& visit) {
     for (std::int64_t region = 0; region < map.regions(); ++region) each_feature_block(map, region, visit);

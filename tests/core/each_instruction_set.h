@@ -8,7 +8,7 @@
 
 namespace anamorph::test {
 
-/// body() on each of them; then the best one is chosen again.
+/// Calls body() on each instruction set; then the best one is chosen again.
 template <class Body>
 void on_every_instruction_set(const Body& body) {
     for (const char* const* set = simd::instruction_sets(); *set; ++set) {

@@ -13,9 +13,9 @@
 
 namespace anamorph::families {
 
-/// smooth: lines of B are A's moved by a smooth field. random: each line moved and turned at will. face: the
-/// outlines of two faces (32 lines whatever `count`). crossing: pairs of lines that cross at their middles.
-/// short: lines of a few pixels. outside: many lines beyond the frame.
+/// The names of the families. smooth: lines of B are A's moved by a smooth field. random: each line moved and
+/// turned at will. face: the outlines of two faces (32 lines whatever `count`). crossing: pairs of lines that
+/// cross at their middles. short: lines of a few pixels. outside: many lines beyond the frame.
 inline const std::vector<std::string>& names() {
     static const std::vector<std::string> all{"smooth", "face", "random", "crossing", "short", "outside"};
     return all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the tests of figures: scripts performed, and frames compared as the originals' print them.
+// What the tests of figures share: scripts performed, and frames compared as the originals' print them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace anamorph::figure_cases {
 
-/// "s7"
+/// A name with a number: "s7".
 inline std::string numbered(const char* name, int i) {
     std::string out(name);
     out += std::to_string(i);

@@ -100,7 +100,8 @@ class SceneMaker {
         return s;
     }
 
-    /// A body that touches another: from outside or inside, on the surface or in the view, or along a curve.
+    /// Makes a body that touches another: from outside or inside, on the surface or in the view, or along a
+    /// curve.
     figure::Ellipsoid touching(const figure::Ellipsoid& e, const figure::View& view) {
         const glm::dvec3 u = direction(), at = e.center + e.rotation * (e.axes * u),
                          normal = glm::normalize(e.rotation * (u / e.axes));
@@ -145,7 +146,7 @@ class SceneMaker {
         }
     }
 
-    /// From the centre to the surface point with normal `d`.
+    /// The vector from the centre to the surface point with normal `d`.
     static glm::dvec3 support(const figure::Ellipsoid& e, const glm::dvec3& d) {
         const glm::dvec3 along = e.axes * (glm::transpose(e.rotation) * d);
         return e.rotation * (e.axes * along / glm::length(along));
@@ -165,13 +166,14 @@ inline Vec eye_of(const figure::View& view) {
     const Mat to_scene = glm::inverse(Mat(view.rotation));
     return Vec(view.center) - to_scene * Vec(0, 0, view.eye_distance);
 }
-/// From the observer through p.
+/// The direction from the observer through p.
 inline Vec ray_through(const figure::View& view, const Vec& p) {
     if (view.perspective()) return p - eye_of(view);
     return glm::inverse(Mat(view.rotation)) * Vec(0, 0, 1);
 }
 
-/// R^-1 v / axes; axes may be zero only where v has no part along them.
+/// A vector on the unit sphere of a body: R^-1 v / axes; axes may be zero only where v has no part along
+/// them.
 inline Vec to_unit(const figure::Ellipsoid& e, const Vec& v) {
     const Vec own = glm::inverse(Mat(e.rotation)) * v;
     return own / Vec(std::fabs(e.axes.x), std::fabs(e.axes.y), std::fabs(e.axes.z));
@@ -232,10 +234,10 @@ inline double limb_distance(const figure::Ellipsoid& e, const figure::View& view
 
 struct OutlineFindings {
     std::int64_t samples = 0, hidden = 0, wrong = 0;
-    std::int64_t near = 0;     ///< within 1e-6 of a crossing along the limb, and differing
-    std::int64_t grazing = 0;  ///< differing, but a move by 1e-9 of the body's size changes the truth
+    std::int64_t near = 0;     ///< differing samples within 1e-6 of a crossing along the limb
+    std::int64_t grazing = 0;  ///< differing samples whose truth a move by 1e-9 of the body's size changes
     double worst_limb = 0;
-    std::int64_t gaps = 0;  ///< arcs that do not make up the circle
+    std::int64_t gaps = 0;  ///< outlines whose arcs do not make up the circle
 
     void add(const OutlineFindings& f) {
         samples += f.samples;

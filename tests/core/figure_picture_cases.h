@@ -24,13 +24,13 @@ struct Scene {
     int width = 64, height = 48;
 };
 
-/// What a ray meets first.
+/// The surface that a ray meets first.
 struct Met {
     int body = -1;
     bool far_side = false;
     Real depth = HUGE_VALL;
     RealVector point{0.0L};  ///< in the scene
-    /// How little it would take to change that: the least difference to the next depth, relative to the size
+    /// The least change that would alter this: the least difference to the next depth, relative to the size
     /// of what is met, and the least distance from a limb, relative to the body.
     Real doubt = HUGE_VALL;
 };
@@ -90,7 +90,7 @@ inline Met meet(const Scene& scene, Real x, Real y) {
     return met;
 }
 
-/// Bodies and views by the seed.
+/// Makes bodies and views by a seed.
 class SceneMaker {
   public:
     explicit SceneMaker(unsigned seed) : m_random(seed) {}
@@ -104,8 +104,8 @@ class SceneMaker {
         for (int k = 3; k >= 0; --k) q[k] = number(-1, 1);
         return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
     }
-    /// In a cube of that half side about the origin, the longest axis between `least` and `most`, others down
-    /// to a share of 1 / aspect of it.
+    /// A body in a cube of that half side about the origin, the longest axis between `least` and `most`,
+    /// others down to a share of 1 / aspect of it.
     figure::Ellipsoid body(double spread, double least, double most, double aspect) {
         figure::Ellipsoid e;
         for (int k = 0; k < 3; ++k) e.center[k] = number(-spread, spread);
@@ -115,7 +115,7 @@ class SceneMaker {
         e.rotation = turn();
         return e;
     }
-    /// A picture of about 200 units. `eye`: its distance from the middle; infinite for none.
+    /// A scene of about 200 units. `eye`: the eye's distance from the middle; infinite for none.
     Scene scene(int count, double least, double most, double aspect, double eye, int width = 64,
                 int height = 48) {
         Scene s;

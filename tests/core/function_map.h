@@ -12,8 +12,8 @@ class FunctionMap final : public BlockMap {
   public:
     using Function = std::function<Point<double>(double, double)>;
 
-    /// A polynomial block is the function's where that is a quadratic; exact ones stand where none is
-    /// possible.
+    /// Makes blocks of a kind. A polynomial block is the function's where that is a quadratic; exact ones
+    /// stand where none is possible.
     FunctionMap(int width, int height, Block::Kind kind, Function function)
         : BlockMap(width, height, {Box{0, 0, width, height}}),
           m_kind(kind),

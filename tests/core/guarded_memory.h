@@ -12,7 +12,7 @@ namespace anamorph::test {
 
 class GuardedMemory {
   public:
-    /// At least `size` bytes, whole pages.
+    /// Reserves at least `size` bytes, whole pages.
     explicit GuardedMemory(std::size_t size = 1)
         : m_page(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))),
           m_size((size + m_page - 1) / m_page * m_page) {

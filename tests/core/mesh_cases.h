@@ -11,7 +11,7 @@
 
 namespace anamorph::test {
 
-/// The same numbers on every machine.
+/// A source of random numbers, the same on every machine.
 class Random {
   public:
     explicit Random(unsigned seed) : m_random(seed) {}
@@ -26,7 +26,7 @@ class Random {
     std::mt19937 m_random;
 };
 
-/// Evenly spaced vertices that stay where they are.
+/// A mesh of evenly spaced vertices that stay where they are.
 inline ControlMesh identity_mesh(const Size& size, int columns, int rows) {
     ControlMesh mesh;
     mesh.columns = columns;
@@ -37,8 +37,8 @@ inline ControlMesh identity_mesh(const Size& size, int columns, int rows) {
     return mesh;
 }
 
-/// Vertices moved by up to `amplitude` cells; lines at random places if `uneven`; `levels` finer levels, each
-/// with some cells cut and some of their vertices moved.
+/// A mesh of vertices moved by up to `amplitude` cells; lines at random places if `uneven`; `levels` finer
+/// levels, each with some cells cut and some of their vertices moved.
 inline ControlMesh random_mesh(Random& random, const Size& from, const Size& to, int columns, int rows,
                                double amplitude, bool uneven, int levels) {
     ControlMesh mesh = identity_mesh(to, columns, rows);
@@ -84,7 +84,7 @@ inline ControlMesh random_mesh(Random& random, const Size& from, const Size& to,
     return mesh;
 }
 
-/// By name: what breaks those who sample.
+/// Meshes that break those who sample, each with its name.
 inline std::vector<std::pair<std::string, ControlMesh>> hard_meshes(const Size& from, const Size& to) {
     std::vector<std::pair<std::string, ControlMesh>> meshes;
     const auto add = [&](const char* name, int columns, int rows, const auto& move) {

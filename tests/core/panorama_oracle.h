@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a panorama's pixel comes from, written out in long double: shares nothing with what it judges but the
-// places and axes of a cube's faces, which are whole numbers.
+// The place that a panorama's pixel comes from, written out in long double: shares nothing with what it
+// judges but the places and axes of a cube's faces, which are whole numbers.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct View {
     mutable std::shared_ptr<const class LensOracle> solved = {};
 };
 
-/// A picture through a lens; of a projection that may have it.
+/// A picture through a lens, in a projection that may have it.
 inline View view_through(const std::string& lens, const Size& size, double fov) {
     return {lens.starts_with("kb4") ? Projection::fisheye : Projection::rectilinear,
             size.width,
@@ -39,13 +39,13 @@ inline View view_through(const std::string& lens, const Size& size, double fov) 
             LensModel::parse(lens)};
 }
 
-/// What is judged.
+/// The chart that is judged.
 inline Chart chart_of(const View& v) {
     return Chart(v.projection, v.width, v.height, v.fov,
                  v.centers ? PixelSpacing::centers : PixelSpacing::edges, "", 1, v.lens);
 }
 
-/// Radians per plane unit and all that: half the plane's width for half the field of view.
+/// Half the plane's width, in its unit: the image of half the field of view.
 inline Real half_plane(const View& v) {
     const Real half = Real(v.fov) / 2;
     const auto tangent = [](Real degrees) {
@@ -80,7 +80,7 @@ inline int face_width(const View& v) {
     }
 }
 
-/// Pixels per unit of the plane, whose pixels would be square if fields of view ran from edge to edge.
+/// The pixels per unit of the plane, which would be square if fields of view ran from edge to edge.
 struct Scale {
     Real x, y;
 };
@@ -145,7 +145,7 @@ class LensOracle {
                 return r + k(0) * r2 * r + k(1) * r4 * r + k(2) * r4 * r2 * r + k(3) * r4 * r4 * r;
         }
     }
-    /// Its root, by halving; not a number beyond the fold.
+    /// The root of formula(r) = value, by halving; not a number beyond the fold.
     Real root(Real value) const {
         Real low = 0, high = m_end;
         if (value > formula(m_end)) return NAN;
@@ -158,7 +158,8 @@ class LensOracle {
     Real end() const { return m_end; }
     Real unit() const { return m_unit; }
 
-    /// A pixel of the ideal picture as it is observed, and back. The ideal one's centre is the picture's middle.
+    /// The pixel at which one of the ideal picture is observed; ideal() is the way back. The ideal one's
+    /// centre is the picture's middle.
     Point<Real> observed(const View& v, const Point<Real>& ideal) const {
         const Real x = (ideal.x - Real(v.width) / 2) / m_unit, y = (ideal.y - Real(v.height) / 2) / m_unit;
         const Real r = std::hypot(x, y), angle = std::atan2(y, x);
@@ -185,7 +186,7 @@ class LensOracle {
         return tangential ? newton(v, observed, p) : p;
     }
 
-    /// With slopes from differences.
+    /// Solves observed(p) = wanted by Newton's method from `p`, with slopes from differences.
     Point<Real> newton(const View& v, const Point<Real>& wanted, Point<Real> p) const {
         for (int i = 0; i < 40; ++i) {
             const Real h = 1e-6L * m_unit;
@@ -283,7 +284,7 @@ inline Vector rotated(Vector v, const Orientation& look) {
     return v;
 }
 
-/// The other way round, by the inverses in the other order.
+/// Turns back, by the inverses in the other order.
 inline Vector turned_back(Vector v, const Orientation& held) {
     turn(v.z, v.x, -held.yaw);
     turn(v.y, v.z, -held.pitch);

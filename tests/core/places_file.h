@@ -45,7 +45,7 @@ Both ways are read, but for expect none. One alone: accept ray, accept pixel; ac
       degree, or a pixel, of one that has a counterpart: just outside and just inside the end. Of a map: all point.
 )";
 
-/// What the files of one of the lists have.
+/// The words and numbers that the files of one of the lists have.
 struct FileKind {
     std::string folder, group;
     Words sides;
@@ -57,10 +57,10 @@ inline const FileKind kLensFiles{"lens", "chart", {"ideal", "observed"}, false, 
 inline const FileKind kSurfaceFiles{"surface", "surface", {}, false, 3, 1};
 inline const FileKind kMapFiles{"map", "map", {"point"}, true, 2, 1};
 
-/// What is accepted and expected.
+/// A place: the numbers that are accepted, and those that are expected.
 struct Place {
     std::string at;    ///< file and line
-    std::string side;  ///< the only one that is read from, if one is named
+    std::string side;  ///< the only side that is read from, if one is named
     Numbers accept;
     bool answered = false;
     std::optional<Numbers> expect;
@@ -111,7 +111,7 @@ class PlacesReader {
         words.erase(words.begin());
         take(key, words);
     }
-    /// All that was read.
+    /// The groups of all lines that were read.
     const std::vector<Group>& groups() const {
         check_answered();
         return m_groups;
@@ -171,7 +171,7 @@ class PlacesReader {
         if (m_groups.empty()) refuse(m_at, "no " + m_kind.group + " stands before");
         return m_groups.back();
     }
-    /// The last place, which has been answered or has not.
+    /// The last place, which has to have been answered or not, as `answered` says.
     Place& open_place(bool answered) {
         if (group().places.empty() || group().places.back().answered != answered ||
             !group().places.back().normal.empty())

@@ -10,7 +10,7 @@
 
 namespace anamorph::test {
 
-/// Faces of n x n pixels, or a picture of 2 n x n.
+/// A chart with faces of n x n pixels, or of 2 n x n pixels.
 inline Chart example_chart(Projection projection, int n, PixelSpacing spacing = PixelSpacing::edges,
                            double fov = 0) {
     const FaceGrid faces = faces_of(projection);
@@ -18,7 +18,7 @@ inline Chart example_chart(Projection projection, int n, PixelSpacing spacing = 
     return Chart(projection, 2 * n, n, fov, spacing);
 }
 
-/// About that wide, in the projection's own shape.
+/// A chart of about that width, in the projection's own shape.
 inline Chart chart_of_width(Projection projection, int width, double fov = 0,
                             PixelSpacing spacing = PixelSpacing::edges) {
     const FaceGrid faces = faces_of(projection);
@@ -30,7 +30,7 @@ inline Chart chart_of_width(Projection projection, int width, double fov = 0,
                  spacing);
 }
 
-/// Fields of view from tiny to the largest.
+/// The fields of view that a projection may have, from tiny to the largest.
 inline std::vector<double> fovs_of(Projection projection) {
     const FieldOfView limits = fov_of(projection);
     if (limits.fixed) return {limits.standard};

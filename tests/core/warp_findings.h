@@ -13,15 +13,15 @@
 namespace anamorph::test {
 
 struct Findings {
-    double worst_excess = -HUGE_VAL;  ///< error - bound
-    double worst_bound = 0;           ///< of polynomial and computed blocks
+    double worst_excess = -HUGE_VAL;  ///< largest error less its bound
+    double worst_bound = 0;           ///< largest bound of polynomial and computed blocks
     double worst_exact_bound = 0;
     double worst_exact = 0;  ///< error of exact points, over the size of their coordinates
     std::int64_t pixels = 0, exact_pixels = 0, outside_pixels = 0, overlaps = 0;
-    std::vector<double> ratios;  ///< bound over largest error, a block
+    std::vector<double> ratios;  ///< bound over largest error, one for each block
 };
 
-/// `truth(x, y)` gives a Point<long double>.
+/// Compares all pixels of a map with `truth(x, y)`, which gives a Point<long double>.
 template <class Truth>
 Findings examine(const BlockMap& map, const Truth& truth) {
     Findings found;

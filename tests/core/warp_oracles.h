@@ -18,7 +18,8 @@ namespace anamorph::test {
 using Real = long double;
 using RealPoint = Point<Real>;
 
-/// A mesh of one level: Catmull-Rom slopes of what vertices are moved by, Hermite's cubics both ways.
+/// The map of a mesh of one level: Catmull-Rom slopes of what vertices are moved by, Hermite's cubics both
+/// ways.
 class MeshOracle {
   public:
     MeshOracle(const ControlMesh& mesh, const Size& from, const Size& to, double amount)
@@ -122,12 +123,12 @@ class PushOracle {
         RealPoint at;
         bool turned;
         std::size_t cell;
-        Real slope;  ///< the determinant: near 0 by a fold
+        Real slope;  ///< the Jacobian's determinant: near 0 by a fold
     };
 
     PushOracle(const MeshOracle& mesh, double orientation) : m_mesh(mesh), m_orientation(orientation) {}
 
-    /// All, the one that is drawn first.
+    /// Finds all source points, the one that is drawn first.
     std::vector<Root> roots(Real x, Real y) const {
         std::vector<Root> found;
         for (std::size_t j = 0; j < m_mesh.rows(); ++j)
@@ -178,7 +179,7 @@ class PushOracle {
     double m_orientation;
 };
 
-/// Points in pixels: which of them make triangles is the map's, all else is computed here.
+/// The map of points in pixels: which of them make triangles is the map's, all else is computed here.
 class PointsOracle {
   public:
     PointsOracle(const ControlPoints& points, const Scattered& map, const Size& from, const Size& to)

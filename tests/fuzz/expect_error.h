@@ -10,9 +10,9 @@
 
 namespace anamorph::fuzz {
 
-/// Where it is false, replay.cpp lets no allocation fail.
+/// May allocations fail? Where not, replay.cpp lets none fail.
 inline bool memory_may_fail = true;
-/// How many bodies ran to their ends.
+/// The number of bodies that ran to their ends.
 inline long accepted = 0;
 
 inline void require(bool holds, const char* what) {

@@ -12,7 +12,7 @@
 
 namespace anamorph::fuzz {
 
-/// Whatever a side file is called, it is the example's.
+/// A reader to whom every side file, whatever it is called, is the example's.
 class ExampleFile final : public SideFileReader {
   public:
     explicit ExampleFile(const Operation& operation) : m_operation(operation) {}

@@ -43,7 +43,7 @@ Ran run(const std::string& command);
 /// A panorama with detail everywhere, positive, not symmetric: channel c of pixel (x, y).
 float panorama_value(int x, int y, int c, int width, int height);
 OIIO::ImageBuf panorama(int width, int height, OIIO::TypeDesc type = OIIO::TypeFloat, int channels = 3);
-/// The same in a file; `tile` 0: scanlines.
+/// Writes such a panorama to a file; `tile` 0: scanlines.
 void write_panorama(const std::string& name, int width, int height, OIIO::TypeDesc type = OIIO::TypeFloat,
                     int channels = 3, int tile = 64);
 void write_image(const OIIO::ImageBuf& image, const std::string& name);
@@ -60,7 +60,7 @@ struct Pixels {
 Pixels read_pixels(const std::string& name, int miplevel = 0);
 std::vector<float> read_floats(const std::string& name, int miplevel = 0);
 
-/// The message of a failing open; "" and a failed test where it succeeds.
+/// The message of an open that fails; "" and a failed test where it succeeds.
 std::string open_error(const std::string& name);
 
 void write_text(const std::string& name, const std::string& text);
@@ -68,7 +68,7 @@ void write_text(const std::string& name, const std::string& text);
 /// The plugin's input of this name; the test fails where it cannot be opened.
 std::unique_ptr<OIIO::ImageInput> open(const std::string& name);
 
-/// Arguments of a recipe, later ones in place of earlier ones of the same key: "b=town.exr&t=0.3".
+/// Joins the arguments of a recipe, later ones in place of earlier ones of the same key: "b=town.exr&t=0.3".
 std::string joined(const std::vector<Assignment>& arguments);
 /// The recipe that an operation gives as its example, of sources of these names (as many as it needs are
 /// taken), with more arguments. Its side files are written to the working folder.
@@ -80,15 +80,15 @@ OIIO::ParamValueList options(std::initializer_list<std::pair<const char*, const 
 /// The pixels of an image in memory, in its own format; the test fails where it has an error.
 std::vector<std::byte> bytes(const OIIO::ImageBuf& image);
 
-/// Tile sizes, threads, and a cut of 40 x 30 pixels at (x, y) never change a recipe's pixels.
+/// Checks that tile sizes, threads, and a cut of 40 x 30 pixels at (x, y) never change a recipe's pixels.
 void expect_one_picture(const std::string& name, int x, int y);
 
-/// Calls body(first, last) for 200 rounds, then for 1000 more: these leave no handles open, and at most so
-/// many megabytes behind.
+/// Calls body(first, last) for 200 rounds, then for 1000 more, and checks that these leave no handles open,
+/// and at most so many megabytes behind.
 void expect_nothing_left_behind(const std::function<void(int, int)>& body, double megabytes);
 
-/// Random pixels of all these names through a cache, from several threads, each against the picture of
-/// width x height read whole.
+/// Reads random pixels of all these names through a cache, from several threads, and compares each with the
+/// picture of width x height read whole.
 void read_from_threads(OIIO::ImageCache& cache, const std::vector<std::string>& names,
                        const std::vector<std::vector<float>>& expected, int width, int height);
 

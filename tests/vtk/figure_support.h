@@ -40,7 +40,7 @@ struct Ball {
     glm::dvec3 turned_back(const glm::dvec3& v) const { return glm::inverse(glm::normalize(turn)) * v; }
 };
 
-/// As vtkAnamorphFigureReader writes them, with what the filters read.
+/// Figures as vtkAnamorphFigureReader writes them, with the arrays that the filters read.
 inline vtkSmartPointer<vtkPolyData> figures(const std::vector<Ball>& balls) {
     vtkNew<vtkPoints> points;
     points->SetDataType(VTK_DOUBLE);
@@ -61,7 +61,7 @@ inline vtkSmartPointer<vtkPolyData> figures(const std::vector<Ball>& balls) {
     return data;
 }
 
-/// What a filter makes of figures.
+/// The output that a filter makes of figures.
 template <class Filter>
 vtkSmartPointer<vtkPolyData> drawn(vtkPolyData* input, const std::function<void(Filter*)>& set = {}) {
     vtkNew<Filter> filter;

@@ -27,8 +27,8 @@
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// vtkSMPTools with a backend ("Sequential", "STDThread", "TBB" or, null, the one in use) and some threads.
-/// False if there is no such backend.
+/// Makes vtkSMPTools use a backend ("Sequential", "STDThread", "TBB" or, null, the one in use) and some
+/// threads. False if there is no such backend.
 bool use_threads(const char* backend, int threads);
 
 /// Calls `body` with every backend that there is and 1, 2 and 4 threads.
@@ -45,7 +45,7 @@ inline void for_any_threads(const std::function<void()>& body) {
     use_threads("Sequential", 0);
 }
 
-/// A folder that is removed with it.
+/// A folder that lives as long as this.
 class Folder {
   public:
     Folder() {
@@ -167,7 +167,7 @@ std::string errors_of(vtkDataObject* input, const std::function<void(Filter*)>& 
     return errors.text();
 }
 
-/// Each of the changes counts as a modification, and none when it is made again.
+/// Checks that each of the changes counts as a modification, and that none does when it is made again.
 template <class Object>
 void expect_modified_by(Object* object, const std::vector<std::function<void(Object*)>>& changes) {
     for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -181,7 +181,7 @@ void expect_modified_by(Object* object, const std::vector<std::function<void(Obj
     }
 }
 
-/// A second Update() does nothing.
+/// Checks that a second Update() does nothing.
 inline void expect_executed_once(vtkAlgorithm* algorithm) {
     algorithm->Update();
     const vtkMTimeType made = algorithm->GetOutputDataObject(0)->GetMTime();
@@ -195,7 +195,7 @@ inline void expect_printed(vtkObject* object, const std::vector<std::string>& pa
     for (const std::string& part : parts) EXPECT_THAT(text.str(), testing::HasSubstr(part));
 }
 
-/// Another class in its place.
+/// A class that stands in another's place.
 template <class Class>
 class Override : public Class {
   public:

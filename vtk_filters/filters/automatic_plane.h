@@ -19,7 +19,7 @@ namespace anamorph_vtk {
 
 bool distributed(vtkMultiProcessController* controller);
 
-/// Least and most of finite points.
+/// The least and the largest coordinates of finite points.
 struct Bounds {
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
     double least[3] = {kInfinity, kInfinity, kInfinity}, most[3] = {-kInfinity, -kInfinity, -kInfinity};
@@ -34,7 +34,7 @@ class AutomaticPlane {
     /// The plane of all meshes of all ranks of the controller (may be null), which call this together.
     anamorph::ParameterPlane of(const std::vector<vtkPointSet*>& meshes,
                                 vtkMultiProcessController* controller);
-    /// The next data choose anew.
+    /// Forgets the choice: the next data choose anew.
     void forget() { m_across.reset(); }
 
   private:
@@ -48,8 +48,8 @@ class AutomaticPlane {
     std::vector<std::uint64_t> topologies() const;
 
     std::vector<Mesh> m_meshes;
-    std::optional<int> m_across;               ///< the direction that is in neither axis,
-    std::vector<std::uint64_t> m_chosen_with;  ///< and the topologies that it was chosen with
+    std::optional<int> m_across;               ///< the direction that is in neither axis
+    std::vector<std::uint64_t> m_chosen_with;  ///< the topologies that m_across was chosen with
 };
 
 }  // namespace anamorph_vtk

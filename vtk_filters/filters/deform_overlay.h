@@ -15,7 +15,8 @@ class vtkPolyData;
 
 namespace anamorph_vtk {
 
-/// An undeformed mesh and the parameters of its points. Triangles with one that is not finite are left out.
+/// An undeformed mesh and the parameters of its points. Triangles with parameters that are not finite are
+/// left out.
 struct OverlayMesh {
     vtkPointSet* mesh;
     const std::vector<glm::dvec2>* parameters;

@@ -15,7 +15,8 @@ namespace anamorph_vtk {
 
 using Numbers = std::array<double, 9>;
 
-/// Names what is wrong with an entry: "deformation 3: extent=0: must be ...".
+/// Makes deformations of numbers. An error names what is wrong with an entry: "deformation 3: extent=0: must
+/// be ...".
 std::vector<anamorph::Deformation> checked_deformations(const std::vector<Numbers>& list);
 
 Numbers numbers_of(const anamorph::Deformation& deformation);

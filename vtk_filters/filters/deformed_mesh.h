@@ -24,9 +24,9 @@ namespace anamorph_vtk {
 
 struct DeformSettings {
     bool on_plane = true;
-    anamorph::ParameterPlane plane;  ///< if on_plane
+    anamorph::ParameterPlane plane;  ///< where on_plane
     anamorph::DeformOptions options;
-    int precision = 0;  ///< vtkAlgorithm::DesiredOutputPrecision
+    int precision = 0;  ///< as vtkAlgorithm::DesiredOutputPrecision
     bool displacement = true, normals = true;
 
     bool operator==(const DeformSettings& other) const {
@@ -36,30 +36,31 @@ struct DeformSettings {
     }
 };
 
-/// The mesh in one number type of its points.
+/// A deformed mesh, in the number type of its points.
 class DeformedMesh {
   public:
     static constexpr vtkIdType kMostPoints = std::numeric_limits<std::int32_t>::max();
 
     virtual ~DeformedMesh() = default;
 
-    /// Null if the mesh has no points. Throws anamorph::Error.
+    /// Makes a mesh; null if it has no points. Throws anamorph::Error.
     static std::unique_ptr<DeformedMesh> make(vtkPointSet* mesh, vtkDataArray* coordinates,
                                               const DeformSettings& settings);
 
     /// Is this what make() would make?
     virtual bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const = 0;
-    /// What deform() adds from now on; all points are then written again, unless it is what was added before.
+    /// Sets the formula that deform() adds from now on; all points are then written again, unless it is the
+    /// one that was added before.
     virtual void set_formula(const std::optional<anamorph::FormulaDisplacement>& formula,
                              const anamorph::ParallelFor& parallel_for) = 0;
-    /// What the formula adds; nothing where there is none.
+    /// The offsets that the formula adds; none where there is no formula.
     virtual const anamorph::FormulaOffsets& offsets() const = 0;
     /// Follows the list and gives `out`, a shallow copy of the mesh, its points and point arrays. Returns how
     /// many points were written. After an exception the object is to be thrown away.
     virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* out,
                              Execution& execution, double progress_begin, double progress_end) = 0;
 
-    /// The parameters of all points. Those of points that are not moved are not finite.
+    /// The parameters of all points; those of points that are not moved are not finite.
     virtual const std::vector<glm::dvec2>& parameters() const = 0;
 };
 

@@ -14,14 +14,15 @@ class vtkDataSet;
 
 namespace anamorph_vtk {
 
-/// Each put() takes what is there now. They throw Error.
+/// Side files made of inputs. Each put_...() takes what is there now, and throws Error.
 class DrapeInputs final : public anamorph::SideFileReader {
   public:
-    /// The points of a vtkStructuredGrid, or an array of a vtkImageData.
+    /// Takes the points of a vtkStructuredGrid, or an array of a vtkImageData.
     void put_positions(vtkDataSet* data, vtkDataArray* array);
-    /// An array of a vtkImageData: floating point as it is, whole numbers as fractions of the largest of their type.
+    /// Takes an array of a vtkImageData: floating point as it is, whole numbers as fractions of the largest
+    /// of their type.
     void put_heights(vtkDataSet* data, vtkDataArray* array);
-    /// None where there are none.
+    /// Takes a list of deformations; without entries there is no such file.
     void put_deformations(const std::vector<Numbers>& list);
 
     const anamorph::SideFiles& files() const { return m_files; }
@@ -30,7 +31,7 @@ class DrapeInputs final : public anamorph::SideFileReader {
                                                const std::string& name) const override;
 
   private:
-    /// Rows go down.
+    /// Texels in rows that go down.
     struct Texels {
         anamorph::Size size;
         int channels;
@@ -41,7 +42,7 @@ class DrapeInputs final : public anamorph::SideFileReader {
     void put(const char* key, const char* input, vtkDataSet* data, vtkDataArray* array, bool scaled);
 
     anamorph::SideFiles m_files;
-    std::map<std::string, Texels> m_texels;  ///< by key
+    std::map<std::string, Texels> m_texels;  ///< images by key
     std::string m_deformations;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a filter lends to the core while it executes: VTK's threads, its progress, and the wish to stop; what becomes of what
-// the core throws; and what it writes to.
+// The means that a filter lends to the core while it executes: VTK's threads, its progress, and the wish to
+// stop; what becomes of what the core throws; and what it writes to.
 #pragma once
 
 #include <functional>
@@ -23,9 +23,9 @@ class Execution {
   public:
     explicit Execution(vtkAlgorithm* algorithm) : m_algorithm(algorithm) {}
 
-    /// Loops on VTK's threads that take the filter's progress on from `begin` to `end`; it never falls. They
-    /// throw Aborted, and what their body throws. Call them from the filter's own thread. The result must not
-    /// outlive this.
+    /// Makes loops on VTK's threads that take the filter's progress on from `begin` to `end`; it never falls.
+    /// They throw Aborted, and what their body throws. Call them from the filter's own thread. The result
+    /// must not outlive this.
     anamorph::ParallelFor stage(double begin, double end);
     /// Reports progress and throws Aborted if the user wants to stop.
     void progress(double amount);
@@ -40,8 +40,9 @@ class Execution {
 int guarded(vtkObject* object, const std::function<void()>& body,
             std::initializer_list<vtkDataObject*> outputs = {});
 
-/// Are the first ports connected, of which these are the names? An error of the filter tells the first that is not. For
-/// ProcessRequest(), of filters that call all of their ports optional, so that VTK does not complain in its own words.
+/// Are the first ports connected, whose names these are? An error of the filter tells the first that is not.
+/// For ProcessRequest(), of filters that call all of their ports optional, so that VTK does not complain in
+/// its own words.
 bool has_inputs(vtkAlgorithm* filter, std::initializer_list<const char*> names);
 
 /// Sees to it, in RequestDataObject(), that an output is of the class of `like`.

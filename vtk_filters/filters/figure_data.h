@@ -30,8 +30,9 @@ class vtkUnsignedCharArray;
 
 namespace anamorph_vtk {
 
-/// Points and arrays as above. The cells are a vertex for each ellipsoid and, with `joints`, a line for each
-/// joint, between the ellipsoids that it connects. `precision` is that of the points, as in vtkAlgorithm.
+/// Writes points and arrays as above. The cells are a vertex for each ellipsoid and, with `joints`, a line
+/// for each joint, between the ellipsoids that it connects. `precision` is that of the points, as in
+/// vtkAlgorithm.
 void write_figures(const anamorph::figure::FigureFrame& frame, bool joints, int precision,
                    vtkPolyData* output);
 
@@ -42,8 +43,8 @@ class FigureData {
     explicit FigureData(vtkPolyData* data);
 
     vtkIdType size() const { return m_size; }
-    /// The axes are not negative, the rotation is orthonormal. Not a number anywhere, or the point is hidden
-    /// (blanked): nothing.
+    /// The ellipsoid of a point; nothing where a number is none, or the point is hidden (blanked). Its axes
+    /// are not negative, its rotation is orthonormal.
     std::optional<anamorph::figure::Ellipsoid> ellipsoid(vtkIdType i) const;
 
   private:
@@ -57,11 +58,11 @@ class FigureData {
 /// too short, to be copied by CopyData.
 void allocate_cell_data(vtkPolyData* input, vtkIdType cells, vtkCellData* data);
 
-/// Joints as the field data has them, between points; those of points that are not there are left out.
+/// The joints that the field data has, between points; those of points that are not there are left out.
 std::vector<anamorph::figure::Joint> joints_of(vtkPolyData* data);
 
-/// The view of the script, in which the window of 1000 units is `height` pixels high; the origin of the
-/// screen is in its middle. Without the field data, that of a script that does not set it.
+/// The view of a script, in which the window of 1000 units is `height` pixels high; the origin of the screen
+/// is in its middle. Without the field data it is that of a script that does not set it.
 anamorph::figure::View script_view(vtkPolyData* data, double height);
 
 }  // namespace anamorph_vtk

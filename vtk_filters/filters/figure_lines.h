@@ -15,15 +15,15 @@ class vtkPolyData;
 
 namespace anamorph_vtk {
 
-/// Those ellipsoids of a data set whose numbers are finite, with the points that they are. Throws Error as
+/// The ellipsoids of a data set whose numbers are finite, with the points that they stand at. Throws Error as
 /// FigureData does.
 struct Bodies {
     explicit Bodies(vtkPolyData* data);
 
     std::vector<anamorph::figure::Ellipsoid> shapes;
     std::vector<vtkIdType> ids;
-    std::vector<std::string> names;               ///< for messages
-    std::vector<anamorph::figure::Joint> joints;  ///< between positions in `shapes`
+    std::vector<std::string> names;               ///< names for messages
+    std::vector<anamorph::figure::Joint> joints;  ///< joints between positions in `shapes`
 };
 
 /// Collects polylines and vertices. Each has the arrays of the point of the input that it stands for but Axes
@@ -32,7 +32,7 @@ class LineWriter {
   public:
     LineWriter(vtkPolyData* input, int precision, std::vector<const char*> names);
 
-    /// A single point is a vertex. A last point equal to the first closes the line.
+    /// Adds a polyline; a single point is a vertex. A last point equal to the first closes the line.
     void add(const std::vector<glm::dvec3>& points, vtkIdType body, const std::vector<double>& numbers);
     void write(vtkPolyData* output);
 

@@ -13,15 +13,15 @@ class vtkImageData;
 
 namespace anamorph_vtk {
 
-/// The channel of alpha, or -1.
+/// The channel of alpha of so many components, or -1.
 inline int alpha_of(int components) {
     return components % 2 == 0 ? components - 1 : -1;
 }
 
-/// Of the numbers of a picture, which messages call `name`. Throws Error.
+/// The type of the numbers of a picture, which messages call `name`. Throws Error.
 anamorph::PixelType pixel_type(vtkDataArray* array, const std::string& name);
 
-/// Packed pixels whose rows go up, as rows that go down.
+/// A view of packed pixels whose rows go up as rows that go down.
 template <class Byte>
 anamorph::BasicView<Byte> turned_over(Byte* data, anamorph::PixelType type, int width, int height,
                                       int channels) {
@@ -34,14 +34,14 @@ anamorph::BasicView<Byte> turned_over(Byte* data, anamorph::PixelType type, int 
 /// An image's pixels as the core reads them.
 class ImageTexture {
   public:
-    /// Of an array of points. Messages call the image `name`. Throws Error: more than a slice, no pixels, no such array,
-    /// other than 1 to 4 components of unsigned char, unsigned short or float.
+    /// Takes an image's array of points. Messages call the image `name`. Throws Error: more than a slice, no
+    /// pixels, no such array, other than 1 to 4 components of unsigned char, unsigned short or float.
     ImageTexture(vtkImageData* image, vtkDataArray* array, const std::string& name);
     ~ImageTexture();
 
     const anamorph::ConstImageView& view() const { return m_view; }
     anamorph::Size size() const { return {m_view.width, m_view.height}; }
-    /// As VTK numbers it.
+    /// The type as VTK numbers it.
     int type() const;
 
   private:

@@ -16,23 +16,26 @@ class vtkPolyData;
 
 namespace anamorph_vtk {
 
-/// Corners that come from the same corners of the scene, at the same place and with the same texel, become one point.
-/// Point arrays are interpolated, but for ids and ghosts, cell arrays copied.
+/// Collects pieces of triangles. Corners that come from the same corners of the scene, at the same place and
+/// with the same texel, become one point. Point arrays are interpolated, but for ids and ghosts, cell arrays
+/// copied.
 class PaintedMesh {
   public:
-    /// The scene is made of triangles. With `size`, that of the panorama in texels, points get texture coordinates.
+    /// Starts a mesh for a scene, which is made of triangles. With `size`, that of the panorama in texels,
+    /// points get texture coordinates.
     PaintedMesh(vtkPolyData* scene, const anamorph::Size* size);
 
-    /// A piece of a triangle with these corners.
+    /// Adds a piece of a triangle with these corners.
     void add(const anamorph::PaintedTriangle& piece, vtkIdType cell, const std::array<vtkIdType, 3>& corners);
-    /// Hands all over to `out`.
+    /// Hands the whole mesh over to `out`.
     void finish(vtkPolyData* out);
 
   private:
     vtkIdType point_of(const anamorph::PaintedCorner& corner, vtkIdType cell,
                        const std::array<vtkIdType, 3>& corners);
 
-    /// Up to three corners of the scene (-1: none; of a point within a triangle, its cell), the place and the texel.
+    /// The origin of a point: up to three corners of the scene (-1: none; of a point within a triangle, its
+    /// cell), the place and the texel.
     struct Key {
         std::array<vtkIdType, 3> from;
         std::array<double, 5> at;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a PNG file is whole: VTK 9.1's reader crashes on one that is cut off or damaged.
+// The check that a PNG file is whole: VTK 9.1's reader crashes on one that is cut off or damaged.
 #pragma once
 
 #include <string>

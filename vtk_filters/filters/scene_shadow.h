@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What may cast shadows in a scene, as triangles.
+// The triangles of a scene that may cast shadows.
 #pragma once
 
 #include <functional>
@@ -14,14 +14,15 @@ class vtkPolyData;
 
 namespace anamorph_vtk {
 
-/// Three corners, and so on.
+/// A list of triangles: three corners each.
 using TriangleList = std::vector<glm::dvec3>;
 
 /// The polygons of a mesh as triangles, with what belongs to its points and cells.
 vtkSmartPointer<vtkPolyData> triangulated(vtkPolyData* mesh);
-/// Calls body(its three points) for every triangle of such a mesh that is not hidden (blanked).
+/// Calls body(its three points) for every triangle of a mesh, as triangulated() makes it, that is not hidden
+/// (blanked).
 void for_shown(vtkPolyData* triangles, const std::function<void(const vtkIdType*)>& body);
-/// Appends those whose points are finite.
+/// Appends the triangles whose points are finite.
 void append_triangles(vtkPolyData* triangles, TriangleList& to);
 /// The triangles of all ranks, in their order. Every rank has to call it.
 TriangleList of_all_ranks(const TriangleList& own, vtkMultiProcessController* controller);

@@ -32,11 +32,11 @@ namespace anamorph_vtk {
 
 bool is_finite(glm::dvec2 parameters);
 
-/// The parameters, with those that are not finite replaced by those of another point: the core takes no
+/// The given parameters, with those that are not finite replaced by those of another point: the core takes no
 /// others.
 std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameters);
 
-/// Three numbers a tuple, of any array, from any thread.
+/// Reads an array of three numbers a tuple, of any type, from any thread.
 class Triples {
   public:
     explicit Triples(vtkDataArray* array);
@@ -49,15 +49,15 @@ class Triples {
     glm::dvec3 read(std::int64_t i) const;
 
     vtkSmartPointer<vtkDataArray> m_array;
-    const float* m_floats = nullptr;  ///< of an array of floats without gaps
+    const float* m_floats = nullptr;  ///< the numbers of an array of floats without gaps
     const double* m_doubles = nullptr;
 };
 
 /// The normals of a mesh, for any deformation of it.
 class SurfaceNormals {
   public:
-    /// mesh: undeformed. parameters: of all its points, to be kept as long as this; cells leave out those not
-    /// finite. plane: null for texture coordinates. normals: of the undeformed mesh, or null.
+    /// mesh: undeformed. parameters: those of all its points, to be kept as long as this; cells leave out
+    /// those not finite. plane: null for texture coordinates. normals: of the undeformed mesh, or null.
     SurfaceNormals(vtkPointSet* mesh, const std::vector<glm::dvec2>& parameters,
                    const anamorph::ParameterPlane* plane, vtkDataArray* normals);
 
@@ -66,13 +66,13 @@ class SurfaceNormals {
     void write(const anamorph::SurfaceSlopes& slopes, T* out) const;
 
   private:
-    /// The cells at each point: those of point i are m_cells[m_first[i]] to m_cells[m_first[i + 1]].
+    /// Links points to their cells: those of point i are m_cells[m_first[i]] to m_cells[m_first[i + 1]].
     void link_cells();
     using Normals = double[3][anamorph::SurfaceSlopes::kMost];
     void turn(const anamorph::SurfaceSlopes& slopes, Normals& to) const;
     void add_corners(const anamorph::SurfaceSlopes& slopes, Normals& to) const;
 
-    vtkSmartPointer<vtkPointSet> m_mesh;  ///< without its arrays
+    vtkSmartPointer<vtkPointSet> m_mesh;  ///< the mesh without its arrays
     vtkSmartPointer<vtkUnsignedCharArray> m_ghosts;
     Triples m_points, m_normals;
     const std::vector<glm::dvec2>& m_parameters;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the blocks of composite data are to be drawn.
+// The looks of the blocks of composite data.
 #pragma once
 
 #include <array>
@@ -13,13 +13,14 @@ namespace anamorph_vtk {
 
 struct BlockLook {
     bool visible = true;
-    std::optional<std::array<double, 3>> color;  ///< instead of its scalars' and the material's
+    std::optional<std::array<double, 3>> color;  ///< in place of the block's scalars and material
     double opacity = 1;
 
     bool is_plain() const { return visible && !color && opacity == 1; }
 };
 
-/// Of the leaves, where it is not plain: each has what is said of it, or of the nearest node that it is in.
+/// The looks of the leaves that are not plain: each has what is said of it, or of the nearest node that it is
+/// in.
 std::map<vtkDataObject*, BlockLook> block_looks(vtkDataObject* data,
                                                 vtkCompositeDataDisplayAttributes* attributes);
 

@@ -18,7 +18,7 @@ class vtkUnsignedCharArray;
 
 namespace anamorph_vtk {
 
-/// Which arrays of the points say what shape the bodies have.
+/// The arrays of the points that say what shape the bodies have.
 struct EllipsoidArrays {
     enum Shape { AXES, TENSOR, COVARIANCE };
     int shape = AXES;
@@ -33,14 +33,14 @@ struct EllipsoidBody {
     glm::dvec3 center{0.0};
     glm::dmat3 axes{0.0}, inverse{0.0};
     bool drawn = false;
-    vtkIdType cell = -1;    ///< that the point is in; -1: none
+    vtkIdType cell = -1;    ///< the cell that the point is in; -1: none
     vtkIdType picked = -1;  ///< what a selection of cells finds: the cell, or the point that is in none
     float color[4] = {1, 1, 1, 1};
-    int texture = -1;           ///< its number; -1: none
+    int texture = -1;           ///< number of the texture; -1: none
     double offset[2] = {0, 0};  ///< texels
 };
 
-/// Where a line meets a body.
+/// The place where a line meets a body.
 struct LineHit {
     double t;  ///< 0 to 1 from the line's first point to its last
     vtkIdType body;
@@ -48,7 +48,7 @@ struct LineHit {
 
 /// A body for each point of a data set: `first` to `first + count` of all.
 struct EllipsoidBlock {
-    unsigned int index = 0;  ///< in composite data, depth first
+    unsigned int index = 0;  ///< number in composite data, depth first
     vtkIdType first = 0, count = 0;
     BlockLook look;
 };
@@ -65,7 +65,8 @@ struct FloatPair {
         }
     }
 
-    /// The sign, the exponent and 24 bits. (GCC 12 at -O3 wrongly leaves out a conversion to float and back.)
+    /// A number's sign, exponent and first 24 bits. (GCC 12 at -O3 wrongly leaves out a conversion to float
+    /// and back.)
     static double leading_bits(double number) {
         return std::bit_cast<double>(std::bit_cast<std::uint64_t>(number) & ~((std::uint64_t{1} << 29) - 1));
     }
@@ -80,7 +81,7 @@ class EllipsoidBodies {
     /// Adds the points of a block, hidden ones and ghosts as bodies that are not drawn. Throws Error naming an
     /// array that is missing or not as it should be.
     void add(vtkDataSet* data, unsigned int index, const EllipsoidArrays& arrays);
-    /// `colors`: RGBA of the points, or of the cells.
+    /// Gives the bodies of a block the colors of their points, or of their cells: `colors`, RGBA.
     void color(const EllipsoidBlock& block, vtkUnsignedCharArray* colors, bool of_cells);
     /// Gives all of a block one color, and its opacity.
     void color(const EllipsoidBlock& block, const double* color);
@@ -89,7 +90,8 @@ class EllipsoidBodies {
     std::optional<LineHit> hit(const EllipsoidBlock& block, const glm::dvec3& from,
                                const glm::dvec3& to) const;
 
-    /// A power of two near the size of all, and the texels of ellipsoid_shader.h in that unit.
+    /// A power of two near the size of all bodies; texels() gives the texels of ellipsoid_shader.h in that
+    /// unit.
     double unit() const;
     std::vector<float> texels(double unit) const;
 };

@@ -13,9 +13,10 @@
 
 namespace anamorph_vtk {
 
-/// Texels that a body takes of the buffer `bodies`: the centre, as the sum of two floats a coordinate (its w: 1, or 0 if it
-/// is not to be drawn; the other w: 1 + the number of its texture, 0 without one); the columns of A (the first two w: its
-/// cell's id, as id % 2^24 and id / 2^24); the rows of A^-1 (the first two w: the texture's offset in texels); the colour.
+/// The number of texels that a body takes of the buffer `bodies`: the centre, as the sum of two floats a
+/// coordinate (its w: 1, or 0 if it is not to be drawn; the other w: 1 + the number of its texture, 0 without
+/// one); the columns of A (the first two w: its cell's id, as id % 2^24 and id / 2^24); the rows of A^-1 (the
+/// first two w: the texture's offset in texels); the colour.
 constexpr int kBodyTexels = 9;
 
 /// Draws 3 vertices, a triangle, for each body.
@@ -81,7 +82,7 @@ void main()
 }
 )glsl";
 
-/// With CUT 1 for bodies that the eye may be in, or a plane may cut.
+/// Declarations of the fragment shader, with CUT 1 for bodies that the eye may be in, or a plane may cut.
 constexpr const char* kEllipsoidDeclarations = R"glsl(
 uniform mat4 viewToClip;
 uniform float depthBias;
@@ -128,7 +129,7 @@ bool isCut(vec3 p)
 #endif
 //VTK::PositionVC::Dec)glsl";
 
-/// The first point of the ray that is not cut off; the far side shows where the near one is.
+/// Finds the first point of the ray that is not cut off; the far side shows where the near one is.
 constexpr const char* kEllipsoidPosition = R"glsl(
   float side = farSide == 1 ? -1.0 : 1.0;
   vec3 s = spherePoint(side);
@@ -152,7 +153,8 @@ constexpr const char* kEllipsoidDepth = R"glsl(
   gl_FragDepth = 0.5 * (gl_DepthRange.diff * depth + gl_DepthRange.near + gl_DepthRange.far) - depthBias;
 )glsl";
 
-/// Texture coordinates as vtkAnamorphFigureGeometry has them. Across the cut behind they change by little, not by 1.
+/// Computes texture coordinates as vtkAnamorphFigureGeometry has them. Across the cut behind they change by
+/// little, not by 1.
 constexpr const char* kEllipsoidTexture = R"glsl(
   vec3 own = basis * s;
   vec2 uv = vec2(0.5 - atan(own.x, -own.z) * 0.15915494, 0.5 + atan(own.y, length(own.xz)) * 0.31830989);
@@ -161,8 +163,9 @@ constexpr const char* kEllipsoidTexture = R"glsl(
   uvUp.x -= floor(uvUp.x + 0.5);
 )glsl";
 
-/// The texel of the texture of a body, (u, v) as the core's body_mapping.h has them. What lies beyond the texture's edges goes on as
-/// the mapping does: LATLONG over the poles and around, which takes a texture that repeats; MIRRORED; or as at the edge.
+/// Reads the texel of the texture of a body, (u, v) as the core's body_mapping.h has them. What lies beyond
+/// the texture's edges goes on as the mapping does: LATLONG over the poles and around, which takes a texture
+/// that repeats; MIRRORED; or as at the edge.
 constexpr const char* kBodyTexture = R"glsl(
 uniform sampler2D bodyTexture;
 uniform int bodyTextureChannels;  // 0: none
@@ -187,14 +190,14 @@ vec4 bodyTexel(vec2 uv, vec2 across, vec2 up)
 }
 )glsl";
 
-/// In NUDES' space, where z is negated.
+/// Computes texture coordinates in NUDES' space, where z is negated.
 constexpr const char* kBodyTextureCoordinates = R"glsl(
   vec3 bodyPoint = vec3(1.0, 1.0, -1.0) * (basis * s);
   vec2 bodyUv, bodyUvAcross, bodyUvUp;
   bodyMapping(bodyPoint, dFdx(bodyPoint), dFdy(bodyPoint), bodyUv, bodyUvAcross, bodyUvUp);
 )glsl";
 
-/// Over the body's own colour, where it is transparent.
+/// Lays the texture over the body's own colour where it is transparent.
 constexpr const char* kBodyTextureColor = R"glsl(
   if (bodyTextureChannels > 0)
   {

@@ -40,30 +40,31 @@ class ProjectionHook : public LoadedTexture {
 
     static void put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner);
     static void take_off(vtkActor* actor);
-    /// Whose hooks an actor has; null: none.
+    /// The shader whose hooks an actor has; null: none.
     static vtkAnamorphProjectionShader* owner_of(vtkActor* actor);
-    /// What it throws as of the last frame; null: nothing.
+    /// The panorama that a projector throws as of the last frame; null: nothing.
     static const PreparedPanorama* prepared_for(vtkActor* actor, int projector);
 
-    /// How often its map of what hides has been drawn, and what its rays are followed through.
+    /// The number of times that the map of what hides from a projector, and the texture that its rays are
+    /// followed through, have been made.
     static int shadow_draws_for(vtkActor* actor, int projector);
 
-    // As a texture.
+    // The members of a texture.
     void Render(vtkRenderer* renderer) override;
     void PostRender(vtkRenderer* renderer) override;
     void ReleaseGraphicsResources(vtkWindow* window) override;
 
   private:
-    /// What the hooks of an actor share.
+    /// The state that the hooks of an actor share.
     struct State {
         PreparedPanoramas prepared;
-        std::vector<bool> rays;  ///< of projectors: are shadows those of rays?
+        std::vector<bool> rays;  ///< of each projector: are its shadows those of rays?
         bool hides = false, has_text = false;
         std::string complaint;
     };
 
     vtkOpenGLTexture* panorama() const;
-    /// Once, where something is wrong.
+    /// Tells a complaint, unless it is empty or the last one.
     void complain(const std::string& complaint, std::string& last);
     /// Loads all panoramas, and writes the shaders anew where the text has changed.
     void refresh_text(vtkRenderer* renderer);
@@ -73,7 +74,7 @@ class ProjectionHook : public LoadedTexture {
     void refresh_shadows(vtkRenderer* renderer);
     vtkTextureObject* shadows_now(vtkOpenGLRenderWindow* window, int size);
     void set_uniforms(vtkRenderer* renderer);
-    /// `away`: how far the projector is from the origin of the scene.
+    /// Writes the uniforms. `away`: the distance of the projector from the origin of the scene.
     void write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin, const glm::dmat3& frame,
                         double away);
 
@@ -83,13 +84,13 @@ class ProjectionHook : public LoadedTexture {
     std::size_t m_index = 0;
     std::shared_ptr<State> m_state;
     std::string m_wrong_pose, m_wrong_table, m_wrong_shadows;
-    /// None in mode direct.
+    /// The table; none in mode direct.
     vtkSmartPointer<LoadedTexture> m_table;
-    /// What the table was made of.
+    /// The panorama that the table was made of.
     std::shared_ptr<const PreparedPanorama> m_table_of;
     std::pair<vtkTextureObject*, vtkMTimeType> m_drawn{};
     vtkSmartPointer<LoadedTexture> m_shadows;
-    /// None where nothing is hidden.
+    /// The map of what hides; none where nothing is hidden.
     std::shared_ptr<ShadowMap> m_shadow_map;
     std::shared_ptr<ShadowRays> m_shadow_rays;
 };

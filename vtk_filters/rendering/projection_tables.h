@@ -11,7 +11,7 @@ class vtkTextureObject;
 
 namespace anamorph_vtk {
 
-/// Residuals of all groups, one above the other.
+/// The texture of the residuals of all groups, one above the other.
 vtkSmartPointer<vtkTextureObject> residual_table(const PreparedPanorama& panorama,
                                                  vtkOpenGLRenderWindow* window);
 
@@ -20,7 +20,7 @@ vtkSmartPointer<vtkTextureObject> residual_table(const PreparedPanorama& panoram
 vtkSmartPointer<vtkTextureObject> drawn_planes(const PreparedPanorama& panorama, bool bytes,
                                                vtkOpenGLTexture* picture, vtkOpenGLRenderWindow* window);
 
-/// One white texel, where there is no other texture.
+/// A texture of one white texel, where there is no other.
 vtkSmartPointer<vtkTextureObject> blank_texture(vtkOpenGLRenderWindow* window);
 
 }  // namespace anamorph_vtk

@@ -13,10 +13,10 @@ class vtkAnamorphProjectionShader;
 
 namespace anamorph_vtk {
 
-/// What the text depends on: of a projector, all but its pose; and how it is thrown.
+/// The facts that the text depends on: of a projector, all but its pose; and how it is thrown.
 struct ThrownPanorama {
     int projection = 0, width = 0, height = 0;
-    int components = 4;  ///< of the texture as it was loaded
+    int components = 4;  ///< components of the texture as it was loaded
     double fov = 0, d = 1, fade = 0;
     std::string lens;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
@@ -26,49 +26,52 @@ struct ThrownPanorama {
     bool operator==(const ThrownPanorama&) const = default;
 };
 
-/// Of a projector as it is, but for the texture's components. Throws Error where it has no picture.
+/// The facts of a projector as it is, but for the texture's components. Throws Error where it has no picture.
 ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphProjectionShader& shader);
 
-/// As the core has it.
+/// The pose of a projector as the core has it.
 anamorph::ProjectorPose pose_of(vtkAnamorphPanoramaProjector& projector);
 
 /// A panorama with what its mode needs.
 struct PreparedPanorama {
     ThrownPanorama thrown;
     anamorph::Chart chart;
-    /// None in mode direct. Of mode residual, only those whose bound is good enough.
+    /// The groups of projection planes; none in mode direct. In mode residual, only those whose bound is good
+    /// enough.
     std::vector<anamorph::ProjectionGroup> groups;
     anamorph::GroupOptions field;
 
-    /// Throws Error.
+    /// Prepares a panorama. Throws Error.
     explicit PreparedPanorama(const ThrownPanorama& panorama);
-    /// In texels, proven, where residuals are read; of mode residual.
+    /// The proven bound in texels where residuals are read; of mode residual.
     double bound() const;
 };
 using PreparedPanoramas = std::vector<std::shared_ptr<const PreparedPanorama>>;
 
-/// What becomes of the tags of VTK's shaders. A tag is kept in front, but for that of texture coordinates.
+/// The text that the tags of VTK's shaders become. A tag is kept in front, but for that of texture
+/// coordinates.
 struct ProjectionText {
     std::string vertex_declarations, vertex_code, geometry_declarations, geometry_code;
     std::string fragment_declarations, fragment_functions, fragment_code;
 };
 
-/// `rays`: of each, are shadows those of rays, else of a map? `hide`: are fragments left out that receive nothing?
+/// The shaders' text for panoramas. `rays`: of each, are shadows those of rays, else of a map? `hide`: are
+/// fragments left out that receive nothing?
 ProjectionText projection_text(const PreparedPanoramas& panoramas, const std::vector<bool>& rays, bool hide);
 
-/// The fragment shader that draws a panorama on its projection planes, one above the other: colours times how much of them
-/// counts, and that.
+/// The fragment shader that draws a panorama on its projection planes, one above the other: colours times the
+/// share of them that counts, and that share.
 std::string plane_text(const PreparedPanorama& panorama);
 
-/// The names in the text of what belongs to a projector: its texture, its table or planes, its shadows, and a matrix and a vector that make
-/// a ray in its frame of gl_Position.
+/// The names in the text of a projector's uniforms: its texture, its table or planes, its shadows, and a
+/// matrix and a vector that make a ray in its frame of gl_Position.
 std::string texture_name(std::size_t projector);
 std::string table_name(std::size_t projector);
 std::string shadow_name(std::size_t projector);
 std::string matrix_name(std::size_t projector);
 std::string origin_name(std::size_t projector);
 std::string away_name(std::size_t projector);
-/// A matrix that turns such rays into the scene's axes.
+/// The name of a matrix that turns such rays into the scene's axes.
 std::string frame_name(std::size_t projector);
 
 }  // namespace anamorph_vtk

@@ -21,7 +21,7 @@ namespace anamorph_vtk {
 
 class ShadowRays {
   public:
-    /// As many triangles, whose texture has up to 400 MB.
+    /// The most triangles, whose texture has up to 400 MB.
     static constexpr vtkIdType kMostTriangles = 1 << 22;
 
     explicit ShadowRays(vtkOpenGLRenderWindow* window);
@@ -29,7 +29,7 @@ class ShadowRays {
 
     /// The texture of what surrounds a position; made if something has changed since the last time.
     vtkTextureObject* refreshed(vtkPolyData* occluders, const glm::dvec3& position);
-    /// How often it has been made.
+    /// The number of times that the texture has been made.
     int draws() const { return m_draws; }
     bool is_of(vtkOpenGLRenderWindow* window) const;
 
@@ -42,14 +42,15 @@ class ShadowRays {
     int m_draws = 0;
 };
 
-/// How many triangles a mesh is cut into.
+/// The number of triangles that a mesh is cut into.
 vtkIdType count_triangles(vtkPolyData* mesh);
 
-/// `bool anamorphHidden#(vec3 r, vec3 normal)`, as hidden_function() of shadow maps: does a triangle stand before r? What is
-/// nearer to r than anamorph::Occluders::kTouching of its distance does not hide it, nor what float cannot tell from it.
+/// The text of `bool anamorphHidden#(vec3 r, vec3 normal)`, as hidden_function() of shadow maps gives it:
+/// does a triangle stand before r? What is nearer to r than anamorph::Occluders::kTouching of its distance
+/// does not hide it, nor what float cannot tell from it.
 std::string traced_function();
 
-/// What actors in a window share of a projector, as long as one of them has it.
+/// The shadows of a projector that actors in a window share, as long as one of them has it.
 template <class Shadows>
 std::shared_ptr<Shadows> shared_shadows(void* projector, vtkOpenGLRenderWindow* window) {
     static std::map<std::pair<void*, void*>, std::weak_ptr<Shadows>> all;

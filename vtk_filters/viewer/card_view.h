@@ -28,10 +28,10 @@ namespace anamorph_viewer {
 
 class CardView {
   public:
-    /// Tables of which no bound of so many texels is proven are not read.
+    /// The largest bound in texels of a table that is read.
     static constexpr double kMostError = 0.25;
 
-    /// Throws Error: what a card cannot draw.
+    /// Prepares the drawing of a panorama. Throws Error where a card cannot draw it.
     explicit CardView(const ViewedPanorama& panorama);
 
     vtkActor* actor() { return m_actor; }
@@ -39,8 +39,8 @@ class CardView {
     /// where that is asked for, but there is no trapezoid or no bound, it is drawn per fragment.
     bool look(const View& view, const anamorph::Size& size, bool per_vertex, double gain,
               vtkRenderer* renderer);
-    /// How far off the texel of any pixel of the last view may be, in texels of the image that is thrown: that of tables, 0
-    /// per fragment.
+    /// The largest error of the texel of any pixel of the last view, in texels of the image that is thrown:
+    /// that of tables, 0 per fragment.
     double bound() const { return m_bound; }
     const anamorph::Chart& chart() const { return m_chart; }
 
@@ -59,7 +59,7 @@ class CardView {
     void set_gain(double gain);
 
     anamorph::Chart m_chart;
-    glm::dmat3 m_held;  ///< from the panorama's frame of rays to that of views
+    glm::dmat3 m_held;  ///< the turn from the panorama's frame of rays to that of views
     bool m_hdr;
     double m_bound = 0;
     std::optional<bool> m_per_vertex;

@@ -42,13 +42,13 @@ enum class Drawing {
     fragments,  ///< by the graphics card, every pixel by the panorama's formula (card_view.h)
     vertices    ///< by the graphics card, per vertex with the trapezoid, where there is one
 };
-/// "picture" and so on. Throws Error: none of these.
+/// The drawing that a name means: "picture" and so on. Throws Error where it means none.
 Drawing drawing_from_name(const std::string& name);
 
 class PanoramaViewer {
   public:
-    /// `tour`: at least one panorama; names of files are relative to `folder`. `options` hold for all of them, before their
-    /// own. Throws Error where the first cannot be opened.
+    /// Opens a tour. `tour`: at least one panorama; names of files are relative to `folder`. `options` hold
+    /// for all of them, before their own. Throws Error where the first cannot be opened.
     PanoramaViewer(anamorph::Tour tour, const std::string& folder,
                    const std::vector<anamorph::Assignment>& options);
     ~PanoramaViewer();
@@ -61,21 +61,21 @@ class PanoramaViewer {
 
     View view() const;
     void look(const View& view);
-    /// Stops; 1 is twice as bright.
+    /// Sets the exposure in stops; 1 is twice as bright.
     void set_exposure(double stops);
     double exposure() const { return m_exposure; }
     Drawing drawing() const { return m_drawing; }
     void set_drawing(Drawing drawing);
-    /// Of the last view that the card drew; null where it draws none.
+    /// The view that the card drew last; null where it draws none.
     const CardView* card() const { return m_card.get(); }
-    /// Whether that was per vertex.
+    /// Was that view drawn per vertex?
     bool by_vertices() const { return m_by_vertices; }
-    /// Which panorama of the tour is seen.
+    /// The position in the tour of the panorama that is seen.
     std::size_t place() const { return m_place; }
     const ViewedPanorama& panorama() const { return *m_panorama; }
     /// Opens another panorama of the tour. Where it cannot be opened, all stays as it is, and error() says why.
     bool go_to(std::size_t place, const anamorph::TourView& view);
-    /// What last went wrong; empty where nothing did.
+    /// The error that occurred last; empty where none did.
     const std::string& error() const { return m_error; }
 
   private:

@@ -13,7 +13,7 @@
 
 namespace anamorph_viewer {
 
-/// Where a view looks, in degrees, and the width that it covers.
+/// The direction of a view, in degrees, and the width that it covers.
 struct View {
     double yaw = 0, pitch = 0, fov = 90;
 };
@@ -26,33 +26,34 @@ struct Direction {
 /// A panorama for a graphics card.
 struct CardPicture {
     anamorph::Chart chart;
-    anamorph::Orientation held;  ///< of the panorama
-    double d = 1;                ///< of Pannini's projection
+    anamorph::Orientation held;  ///< orientation of the panorama
+    double d = 1;                ///< distance of Pannini's projection
     int channels = 0;
     std::vector<float> pixels;  ///< rows from the top
 };
 
 class ViewedPanorama {
   public:
-    /// `options`: keys of .pano, or of .mosaic where `circles` is among them; none of yaw, pitch, fov and size, which are the
-    /// view's. Throws Error.
+    /// Opens a panorama. `options`: keys of .pano, or of .mosaic where `circles` is among them; none of yaw,
+    /// pitch, fov and size, which are the view's. Throws Error.
     ViewedPanorama(const std::string& file, const std::vector<anamorph::Assignment>& options);
 
-    /// Concentric mosaics, whose viewpoint moves?
+    /// Is it concentric mosaics, whose viewpoint moves?
     bool is_mosaic() const;
-    /// Moves it, by radii of the outer circle; stays where it is rather than to leave the circle.
+    /// Moves the viewpoint, by radii of the outer circle; it stays where it is rather than to leave the
+    /// circle.
     void move(double right, double ahead);
     /// Are values linear and without an upper end?
     bool is_hdr() const { return m_hdr; }
-    /// Of views: 1 or 2 of grey, else the first 3 or 4 are colours.
+    /// The channels of views: 1 or 2 of grey, else the first 3 or 4 are colours.
     int channels() const { return m_channels; }
 
-    /// The pixels of a view, row by row from the top. Throws Error.
+    /// Draws the pixels of a view, row by row from the top. Throws Error.
     std::vector<float> draw(const View& view, const anamorph::Size& size) const;
-    /// All of it, at its finest level that a card takes: 8192 texels a side, and 2^25 in all. Throws Error: mosaics, and views
-    /// that are not rectilinear, have to be drawn by draw().
+    /// The whole panorama, at its finest level that a card takes: 8192 texels a side, and 2^25 in all. Throws
+    /// Error: mosaics, and views that are not rectilinear, have to be drawn by draw().
     CardPicture card_picture() const;
-    /// What point (x, y) of a view shows, in pixels from its upper left corner.
+    /// The direction of the point that (x, y) of a view shows, in pixels from its upper left corner.
     Direction direction(const View& view, const anamorph::Size& size, double x, double y) const;
 
   private:

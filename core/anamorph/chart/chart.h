@@ -83,8 +83,8 @@ struct Piece {
     glm::dvec3 toward{0, 0, 1};  ///< a ray belongs to the piece whose `toward` it is nearest to
 };
 
-/// Where on a chart its formulas are read: the piece, and the direction from which angles are counted. A
-/// local ray has that direction straight ahead: ray = axes * local ray.
+/// The place on a chart where its formulas are read: the piece, and the direction from which angles are
+/// counted. A local ray has that direction straight ahead: ray = axes * local ray.
 struct Branch : Setting {
     int piece = 0;
     glm::dmat3 axes{1};
@@ -166,7 +166,7 @@ class Chart {
     /// directions ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
-    /// What sees() says of a chart whose lens did not end.
+    /// The number that sees() would give if the chart's lens did not end.
     template <class T>
     T sees_without_lens(const Ray<T>& local, int piece = 0) const;
 

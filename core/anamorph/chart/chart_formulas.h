@@ -12,7 +12,7 @@ namespace projection {
 #include "anamorph/chart/projection/list.h"
 }  // namespace projection
 
-/// body(P()) with the formulas of a projection, P of namespace projection.
+/// Calls body(P()) with the class P of namespace projection that has the formulas of a projection.
 template <class Body>
 decltype(auto) with_projection(Projection projection, const Body& body) {
     switch (projection) {

@@ -7,7 +7,7 @@
 
 namespace anamorph {
 
-/// By as many steps as a shader has lines for. They stay in a bracket.
+/// radial_root() by a fixed number of Newton's steps, which stay in a bracket.
 template <>
 GlslNumber lens_formula::radial_root(const LensTerms& lens, const GlslNumber& value);
 

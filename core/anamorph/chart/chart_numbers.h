@@ -17,11 +17,11 @@ namespace anamorph {
 #define ANAMORPH_CHART_SIGHT(external, T)                             \
     external template T Chart::inside(const T&, const T&, int) const; \
     external template T Chart::sees(const Ray<T>&, int) const;
-/// The functions that say where these have a crease.
+/// The functions that say where an image point or a ray is at a crease.
 #define ANAMORPH_CHART_CREASE(external, T)                            \
     external template T Chart::crease(const T&, const T&, int) const; \
     external template T Chart::crease(const Ray<T>&) const;
-/// All these functions with all numbers that they are read with.
+/// Declares all functions of charts with all numbers that they are read with.
 #define ANAMORPH_CHART_NUMBERS(external)                  \
     ANAMORPH_CHART_POINTS(external, double)               \
     ANAMORPH_CHART_POINTS(external, long double)          \

@@ -77,7 +77,7 @@ struct LensTerms {
     Constant over[5], under[4];
     int over_count = 1, under_count = 1;
 
-    /// How far from the centre the ideal and the observed points may lie, in the model's unit.
+    /// The largest distances of the ideal and of the observed points from the centre, in the model's unit.
     double ideal_end = 0, observed_end = 0;
     /// The largest t (radial_of()) before the lens's end, and a lower bound of radial_at() there.
     double end = 0, value_end = 0;
@@ -244,7 +244,7 @@ std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Roun
 /// The least slope of radial_at() over an interval.
 double least_slope(const LensTerms& lens, const Interval& t);
 
-/// The root with its rounding, of all members.
+/// The root of radial_at(t) = value with its rounding, for all members of `value`.
 template <class Real>
 Rounded<Real> radial_root(const LensTerms& lens, const Rounded<Real>& value) {
     const Interval range = radial_root(lens, value.range);
@@ -273,7 +273,7 @@ double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
     return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
 }
 
-/// The root of numbers without jets.
+/// settled() of numbers without jets.
 template <class Real>
 Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<Real>>& v) {
     using R = Rounded<Real>;
@@ -313,7 +313,7 @@ double most_undistorted(const LensTerms& lens, const Point<R>& v) {
     const double x = v.x.computed_size(), y = v.y.computed_size();
     return (s + 2 * by * std::max(x, y) * (x + y)) * (1 + 0x1p-40);
 }
-/// The same bound for tangential_at().
+/// A Lipschitz constant of tangential_at() over all u, in the same norm as most_undistorted().
 template <class R>
 double most_tangential(const LensTerms& lens, const Point<R>& u) {
     const double x = u.x.computed_size(), y = u.y.computed_size();

@@ -12,7 +12,7 @@
 
 namespace anamorph::simd {
 
-/// sum_k c_k f^k of four jets f less their constant parts, where series(i) has the c_k of one.
+/// sum_k c_k f^k of four jets f less their constant parts, where series(i) has the c_k of jet i.
 template <class T, int N, class SeriesOf>
 Jets<T, N> composed(const Jets<T, N>& f, const SeriesOf& series) {
     Four<T> c[N + 1];
@@ -52,7 +52,7 @@ Jets<double, N> shrink_of(const LensTerms& lens, const Point<Jets<double, N>>& v
 
 namespace lens_jets_detail {
 
-/// Coefficients as constant parts.
+/// Replaces the constant parts of jets.
 template <class T, int N>
 Point<Jets<T, N>> about(const Point<Jets<T, N>>& u, const Point<Four<T>>& constant) {
     Point<Jets<T, N>> r = u;
@@ -60,7 +60,7 @@ Point<Jets<T, N>> about(const Point<Jets<T, N>>& u, const Point<Four<T>>& consta
     r.y.c[0] = constant.y;
     return r;
 }
-/// settled() of the constant parts.
+/// settled() of the constant parts of jets.
 template <int N>
 Point<Four<Interval>> settled_constants(const LensTerms& lens, const Point<Jets<Interval, N>>& v) {
     Point<Four<Interval>> constant;
@@ -83,7 +83,8 @@ void set_one(Point<Jets<T, N>>& p, int i, const Point<Jet<T, N>>& one) {
 
 }  // namespace lens_jets_detail
 
-/// As for single jets (chart/lens.h): each of the four ends with the first box that is mapped into itself.
+/// settled() of four jets, as of single ones (chart/lens.h): each ends with the first box that is mapped into
+/// itself.
 template <int N>
 Point<Jets<Interval, N>> settled(const LensTerms& lens, const Point<Jets<Interval, N>>& v) {
     using namespace lens_jets_detail;
@@ -120,7 +121,7 @@ Point<Jets<Interval, N>> settled(const LensTerms& lens, const Point<Jets<Interva
 }
 namespace lens_jets_detail {
 
-/// What is left of v in one degree, by coefficients.
+/// The coefficients of one degree that F(u) lacks of v.
 template <int N>
 struct Lacking {
     Point<double> of[N + 1][kJets];
@@ -137,7 +138,7 @@ struct Lacking {
     }
 };
 using Slopes = std::array<std::optional<lens_formula::Slope<double>>, kJets>;
-/// What u lacks is solved with the slope.
+/// Solves the coefficients of one degree that u lacks, with the slope.
 template <int N>
 void solve_degree(const Slopes& slopes, const Lacking<N>& lacking, int degree, Point<Jets<double, N>>& u) {
     u.x.degree = u.y.degree = degree;
@@ -149,7 +150,7 @@ void solve_degree(const Slopes& slopes, const Lacking<N>& lacking, int degree, P
             u.y.c[at].set(i, gain.y);
         }
 }
-/// The slope's first part makes of u's highest degree a part of the next one.
+/// Takes off what the slope's first part makes of u's highest degree, which is a part of the next one.
 template <int N>
 void take_first_part(const LensTerms& lens, const Point<Jets<double, N>>& u, Lacking<N>& lacking) {
     using First = Jet<double, 1>;
@@ -172,8 +173,9 @@ void take_first_part(const LensTerms& lens, const Point<Jets<double, N>>& u, Lac
 
 }  // namespace lens_jets_detail
 
-/// As for single jets, two degrees at once: what F(u) lacks of v in degree k is the slope times what u lacks; of degree
-/// k + 1, what the slope's first part makes of that is taken off before.
+/// settled() of four jets, as of single ones, but two degrees at once: what F(u) lacks of v in degree k is
+/// the slope times what u lacks; of degree k + 1, what the slope's first part makes of that is taken off
+/// before.
 template <int N>
 Point<Jets<double, N>> settled(const LensTerms& lens, const Point<Jets<double, N>>& v) {
     using namespace lens_jets_detail;

@@ -13,7 +13,7 @@
 
 namespace anamorph::simd {
 
-/// Rounding by adding 1.5 * 2^52 holds up to here.
+/// The largest magnitude that is rounded by adding 1.5 * 2^52.
 inline constexpr double kMostUnits = 0x1p50;
 /// The error of a kernel's value, in units of 2^-53: the distance over the extent errs by 2.5, times the
 /// kernel's greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; the exponential function and
@@ -36,15 +36,15 @@ void axis_factors(const AxisKernel& kernel, const double* x, int count, double* 
 /// A deformation over a grid. Gaussian: F = column[i] row[j]; otherwise F is Wendland's function of
 /// r^2 = column[i] + row[j].
 struct GridTerm {
-    const double* column;  ///< of columns [column_begin, column_end), multiples of kGridBlock
-    const double* row;     ///< of rows [row_begin, row_end), multiples of kGridRows
+    const double* column;  ///< values for columns [column_begin, column_end), multiples of kGridBlock
+    const double* row;     ///< values for rows [row_begin, row_end), multiples of kGridRows
     int column_begin, column_end, row_begin, row_end;
     double units[3];  ///< V / resolution
     bool gaussian;
 };
 
-/// Where the sums of row `row`, a multiple of kGridRows, begin. From there on follow, for every kGridBlock
-/// columns, those of x, y and z of the first row, then those of the next.
+/// The position at which the sums of row `row`, a multiple of kGridRows, begin. From there on follow, for
+/// every kGridBlock columns, those of x, y and z of the first row, then those of the next.
 constexpr std::ptrdiff_t grid_sums(int row, int columns) {
     const std::ptrdiff_t blocks = (std::ptrdiff_t{columns} + kGridBlock - 1) / kGridBlock;
     return std::ptrdiff_t{3} * row * blocks * kGridBlock;
@@ -61,11 +61,11 @@ struct GridBand {
     int columns;
     std::int64_t* sums;
     double resolution;
-    const double* offset;  ///< as base
+    const double* offset;  ///< laid out as base is
     const T* base;
     T* out;       ///< null: sums only
     bool all;     ///< write blocks too that no term reaches
-    bool stream;  ///< past the caches: for surfaces larger than these
+    bool stream;  ///< write past the caches: for surfaces larger than these
 };
 void deform_band(const GridBand<float>& band);
 void deform_band(const GridBand<double>& band);
@@ -85,14 +85,14 @@ void deform_points(const PointTerm* const* terms, std::size_t term_count, const 
 /// after term; all instruction sets give the same bits.
 void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
                       std::size_t count, double* const slopes[6]);
-/// Both at once, with the same bits.
+/// Does what deform_points() and add_point_slopes() do, with the same bits.
 void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
                                const double* v, std::size_t count, std::int64_t* const sums[3],
                                double* const slopes[6]);
 
 /// A deformation over a stretch of one row of a grid, with the derivatives of its factors (axis_factors).
 struct RowTerm {
-    const double *column, *column_slope;  ///< of the stretch's points
+    const double *column, *column_slope;  ///< for the stretch's points
     double row, row_slope;
     double vector[3];
     bool gaussian;
@@ -124,7 +124,7 @@ void blend(const float* const* shapes, const double* weights, std::size_t shape_
 void blend(const double* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
            double* out);
 /// out[i] = base[i] + sum_k weights[k] masks[k][i] (shapes[k][i] - base[i]), with 1 for a mask that is null.
-/// Errors as above, with shape_count + 3.
+/// Errs as blend() does, with shape_count + 3.
 void blend_masked(const float* const* shapes, const float* const* masks, const double* weights,
                   std::size_t shape_count, const float* base, std::size_t count, float* out);
 void blend_masked(const double* const* shapes, const float* const* masks, const double* weights,

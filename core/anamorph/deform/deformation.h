@@ -78,8 +78,8 @@ void add_displacement(const Deformation& deformation, glm::dvec2 p, Displacement
 /// base_v: the direction of (base_u + D_u) x (base_v + D_v); 0 where these are parallel.
 glm::dvec3 normal_of(const DisplacementJet& displacement, glm::dvec3 base_u, glm::dvec3 base_v);
 
-/// What an edit of a list does to the surface: `before` is taken away, `after` is added. Neither is there if
-/// the edit moves nothing.
+/// The change of the surface by an edit of a list: `before` is taken away, `after` is added. Neither is there
+/// if the edit moves nothing.
 struct DeformationChange {
     std::optional<Deformation> before, after;
 

@@ -21,19 +21,20 @@ class DeformationReach {
   public:
     explicit DeformationReach(const std::vector<Deformation>& list);
 
-    /// body(i) for the deformations i that reach a box, and perhaps others near by, in an order that depends on nothing but
-    /// the list. The others add at most far() to each coordinate and each of its Taylor coefficients up to the second degree.
+    /// Calls body(i) for the deformations i that reach a box, and perhaps others near by, in an order that
+    /// depends on nothing but the list. The others add at most far() to each coordinate and each of its
+    /// Taylor coefficients up to the second degree.
     template <class Body>
     void each_near(const Interval& u, const Interval& v, const Body& body) const {
         if (!m_nodes.empty()) visit(0, u, v, body);
     }
     const glm::dvec3& far() const { return m_far; }
 
-    /// (u0, v0) to (u1, v1).
+    /// The rectangle from (u0, v0) to (u1, v1).
     struct Reached {
         double u0, v0, u1, v1;
     };
-    /// What deformation i reaches.
+    /// The rectangle that deformation i reaches.
     const Reached& reached(std::size_t i) const { return m_boxes[i]; }
 
   private:

@@ -24,7 +24,7 @@ struct FormulaRow {
     bool has_value[kProgramRow];
 };
 
-/// Those of at most kProgramRow points that are finite.
+/// The finite ones of at most kProgramRow points.
 FormulaRow row_of(std::span<const glm::dvec2> points, std::size_t first) {
     FormulaRow row;
     const std::size_t end = std::min(points.size(), first + kProgramRow);

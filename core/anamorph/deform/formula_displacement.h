@@ -23,11 +23,11 @@
 
 namespace anamorph {
 
-/// What a formula adds to the displacements of points.
+/// The numbers that a formula adds to the displacements of points.
 struct FormulaOffsets {
     std::vector<double> values;  ///< three numbers a point
-    double error_bound = 0;      ///< none is farther than this from the formula
-    double most = 0;             ///< none is larger
+    double error_bound = 0;      ///< the largest distance of any from the formula
+    double most = 0;             ///< the largest magnitude of any
     std::int64_t undefined = 0;  ///< points where the formula has no value
 };
 
@@ -36,11 +36,12 @@ class FormulaDisplacement {
   public:
     explicit FormulaDisplacement(SpaceFormula formula) : m_formula(std::move(formula)) {}
 
-    /// At many points. The same bits for any number of threads, and but for the bound whatever other points
-    /// there are. Points that are not finite are not moved, and not counted.
+    /// Evaluates the formula at many points: the same bits for any number of threads, and but for the bound
+    /// whatever other points there are. Points that are not finite are not moved, and not counted.
     FormulaOffsets offsets(std::span<const glm::dvec2> points,
                            const ParallelFor& parallel_for = serial_for) const;
-    /// At one point; 0 where there is no value, and derivatives are 0 where there are none.
+    /// Evaluates the formula at one point; 0 where there is no value, and derivatives are 0 where there are
+    /// none.
     DisplacementJet jet(glm::dvec2 point) const;
     /// Adds the formula's derivatives to those by a list. points: of the whole surface.
     void add_slopes(std::span<const glm::dvec2> points, const SurfaceSlopes& slopes) const;
@@ -51,7 +52,7 @@ class FormulaDisplacement {
     }
 
   private:
-    /// Of a few points from `first` on.
+    /// What FormulaOffsets says, of a few points from `first` on.
     struct Part {
         double error_bound = 0, most = 0;
         std::int64_t undefined = 0;

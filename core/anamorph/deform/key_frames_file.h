@@ -22,10 +22,11 @@ struct NamedKeyFrames {
     KeyFrames frames;
 };
 
-/// Longer lists of one name's frames are refused.
+/// The most key frames that a list of one name may have.
 inline constexpr std::size_t kMostKeyFrames = 1u << 20;
 
-/// In alphabetical order. Throws Error: one line that names the file and the entry.
+/// The key frames of a text, in alphabetical order of their names. Throws Error: one line that names the file
+/// and the entry.
 std::vector<NamedKeyFrames> parse_key_frames_json(std::string_view text, std::string_view name);
 
 }  // namespace anamorph

@@ -55,7 +55,7 @@ enum class FoldAnswer {
     found,     ///< it is certainly not positive at Fold::parameters
     undecided  ///< it comes too close to 0 somewhere, or there are too many deformations to tell
 };
-/// What a search for folds found.
+/// The result of a search for folds.
 struct Fold {
     FoldAnswer answer = FoldAnswer::none;
     glm::dvec2 parameters{0.0};

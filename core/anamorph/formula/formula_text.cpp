@@ -366,7 +366,7 @@ Value smooth_step(Maker& m, const Value& low, const Value& high, const Value& x)
     const Value t = m.least(m.most(part, m.number(0)), m.number(1));
     return m.product(m.square(t), m.difference(m.number(3), m.product(m.number(2), t)));
 }
-/// Of numbers of both signs.
+/// The cube root of numbers of both signs.
 Value cube_root(Maker& m, const Value& a) {
     const Value size = m.magnitude(a), third = m.constant(1 / 3.0L);
     const Value root = m.power(size, third);
@@ -470,7 +470,7 @@ class Parser {
         }
     }
 
-    /// Of a definition by itself.
+    /// Checks the name of a definition by itself.
     static void check_name(std::string_view name, std::string_view expression) {
         if (!text_file::is_name(name) || is_taken(name))
             throw Error(printable(name), printable(expression), "must be a name that is no function's");
@@ -532,7 +532,7 @@ class Parser {
         return value;
     }
 
-    /// Of two or more parts with an operator in between, all conditions.
+    /// Parses two or more parts with an operator in between, all conditions; or a single part.
     template <class Part, class Join>
     Value chain(const char* word, const Part& part, const Join& join) {
         skip_blanks();
@@ -734,7 +734,7 @@ NamedValues names_of(Maker& m, const FormulaSetting& setting) {
     return names;
 }
 
-/// Of pixels of an equirectangular picture of all directions.
+/// The names of pixels of an equirectangular picture of all directions.
 NamedValues names_of(Maker& m, const FormulaSetting& setting, const Size& globe) {
     const auto part = [&](const Value& at, int of) { return m.quotient(at, m.number(of)); };
     const auto turns = [&](const Value& count, long double whole) {

@@ -47,15 +47,17 @@
 
 namespace anamorph {
 
-/// What users write. Each expression is named in errors by the member that it stands in, or by the name that it defines.
+/// A map as users write it. Each expression is named in errors by the member that it stands in, or by the
+/// name that it defines.
 struct FormulaText {
     std::string u = "x", v = "y";  ///< source pixels; target pixels of what pushes
-    /// Names with their expressions, before `let`: what that defines them to be does not count.
+    /// Names with their expressions; `let` comes after them, and does not count where it defines the same
+    /// name.
     std::vector<Assignment> definitions;
     std::string let;  ///< "name=expression;name=expression"
 };
 
-/// What the names stand for.
+/// The values that names of a FormulaText stand for.
 struct FormulaSetting {
     Size picture, source;
     double frame = 0;
@@ -64,76 +66,78 @@ struct FormulaSetting {
     bool pushes = false;  ///< the formula leads from the source to the picture
 };
 
-/// A text as programs.
+/// A FormulaText as programs.
 struct PlaneFormula {
     FormulaProgram point;   ///< u and v, in source pixels; in target pixels where it pushes
     FormulaProgram domain;  ///< positive, twice, where they have values
     bool is_everywhere;     ///< the domain is the whole plane
 };
 
-/// Throws Error with the column, counted from 1, and what was expected there; and of a definition that none of the other
-/// expressions uses.
+/// Parses a map. Throws Error with the column, counted from 1, and what was expected there; and of a
+/// definition that none of the other expressions uses.
 PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting);
 
 /// A surface in space, by default the flat picture as surface/shape/shape.h has it: x to the right, y up, z towards the viewer.
 struct SurfaceText {
     std::string px = "(u-0.5)*aspect", py = "v-0.5", pz = "0";
-    std::vector<Assignment> definitions;  ///< as those of FormulaText
+    std::vector<Assignment> definitions;  ///< as in FormulaText
     std::string let;
 };
 
-/// What the names stand for.
+/// The values that names of a SurfaceText stand for.
 struct SurfaceSetting {
     double aspect = 1, frame = 0;
 };
 
-/// A text as programs: of a surface, of u and 1 - v; of a displacement, of u and v.
+/// The text of a formula in space as programs: of a surface, of u and 1 - v; of a displacement, of u and v.
 struct SpaceFormula {
     FormulaProgram point;   ///< x, y and z
     FormulaProgram domain;  ///< positive where there is a point, and so a surface or a ray
-    bool is_everywhere;     ///< there is one everywhere
+    bool is_everywhere;     ///< there is a point everywhere
 
     /// Do both compute the same?
     friend bool operator==(const SpaceFormula& a, const SpaceFormula& b);
 };
 
-/// Throws as parse_formula() does.
+/// Parses a surface. Throws as parse_formula() does.
 SpaceFormula parse_surface(const SurfaceText& text, const SurfaceSetting& setting);
 
 /// A view: the ray of a point of a picture, of any length, by default of a flat picture whose smaller side covers 90 degrees.
 struct RayText {
     std::string x = "px", y = "py", z = "1";   ///< to the right, up and forward
-    std::vector<Assignment> definitions = {};  ///< as those of FormulaText
+    std::vector<Assignment> definitions = {};  ///< as in FormulaText
     std::string let = {};
 };
 
-/// The names of a formula of a picture. As programs of pixels, whose ray has y down, as all rays have. Errors name the
-/// expressions ray_x, ray_y and ray_z. Throws as parse_formula() does.
+/// Parses a view, whose names are those of a FormulaText: as programs of pixels, whose ray has y down, as all
+/// rays have. Errors name the expressions ray_x, ray_y and ray_z. Throws as parse_formula() does.
 SpaceFormula parse_rays(const RayText& text, const FormulaSetting& setting);
 
-/// The same view the other way: where in the picture a direction goes, from its middle in halves of its smaller side, by default in
-/// an equirectangular picture whose smaller side covers 180 degrees. Names of directions:
+/// A view by its inverse: the place in the picture that a direction goes to, from the middle in halves of the
+/// smaller side, by default in an equirectangular picture whose smaller side covers 180 degrees. Names of
+/// directions:
 ///
 ///   lon lat                 longitude, to the right from straight ahead, and latitude, upwards, in radians
 ///
 /// and, as in formulas of a picture, width, height, src_width, src_height and frame.
 struct DirectionText {
     std::string x = "lon/(pi/2)", y = "lat/(pi/2)";  ///< to the right and up
-    std::vector<Assignment> definitions = {};        ///< as those of FormulaText
+    std::vector<Assignment> definitions = {};        ///< as in FormulaText
     std::string let = {};
 };
 
-/// As programs of pixels of `globe`, an equirectangular picture, that give pixels of the picture. Errors name the expressions point_x
-/// and point_y. Throws as parse_formula() does.
+/// Parses the inverse of a view: as programs of pixels of `globe`, an equirectangular picture, that give
+/// pixels of the picture. Errors name the expressions point_x and point_y. Throws as parse_formula() does.
 PlaneFormula parse_directions(const DirectionText& text, const FormulaSetting& setting, const Size& globe);
 
-/// How far points move, along each axis; what is empty is 0.
+/// The distances that points move along each axis; an empty one is 0.
 struct DisplacementText {
     std::string x, y, z;
-    std::string let;  ///< as that of FormulaText
+    std::string let;  ///< as in FormulaText
 };
 
-/// A text as programs of u and v. Errors name the expressions x, y and z. Throws as parse_formula() does.
+/// Parses displacements: as programs of u and v. Errors name the expressions x, y and z. Throws as
+/// parse_formula() does.
 SpaceFormula parse_displacement(const DisplacementText& text, double frame);
 
 }  // namespace anamorph

@@ -22,7 +22,8 @@ inline Linear<double> inverse_of(const Linear<double>& a) {
     const Matrix2 inverse = Matrix2{a.a11, a.a12, a.a21, a.a22}.inverse();
     return {inverse.a11, inverse.a12, inverse.a21, inverse.a22};
 }
-/// (Y J)^-1 Y for all members J, with Y that of the middle one: the first factor is near I, and Cramer's rule hardly widens it.
+/// The inverses (Y J)^-1 Y of all members J, with Y that of the middle one: the first factor is near I, and
+/// Cramer's rule hardly widens it.
 inline Linear<Interval> inverse_of(const Linear<Interval>& a) {
     const auto middle = [](const Interval& x) { return 0.5 * (x.lo + x.hi); };
     const Linear<double> y =
@@ -36,7 +37,7 @@ inline Linear<Interval> inverse_of(const Linear<Interval>& a) {
 
 namespace inverse_detail {
 
-/// One jet, or several at once.
+/// Gives access to one jet, or to several at once.
 template <class J>
 struct Lanes;
 template <class T, int N>
@@ -67,7 +68,7 @@ struct Lanes<simd::Jets<T, N>> {
     static void cut(J& a, int degree) { a.degree = std::min(a.degree, degree); }
 };
 
-/// get(lane) as constants.
+/// The constants get(lane).
 template <class J, class Get>
 J constants(const Get& get) {
     J jet(0);
@@ -75,7 +76,7 @@ J constants(const Get& get) {
     return jet;
 }
 
-/// get(lane) + s, or + t.
+/// The variable s about get(lane), or t.
 template <class J, class Get>
 J variable(const Get& get, bool is_first) {
     J jet = constants<J>(get);
@@ -83,7 +84,7 @@ J variable(const Get& get, bool is_first) {
     return jet;
 }
 
-/// N(u) up to a degree, of f's series by Horner's rule; u has no constant part.
+/// The part N(u) of f's series, up to a degree, by Horner's rule; u has no constant part.
 template <class J>
 J beyond_linear(const J& f, const Point<J>& u, int degree) {
     const auto coefficient = [&](int i, int j) {

@@ -10,7 +10,8 @@
 
 namespace anamorph {
 
-/// Source points origin + to_source z of parameters z, and how target points are read: as from_target f.
+/// A frame of the plane: source points are origin + to_source z of parameters z, and target points are read
+/// as from_target f.
 struct PlaneFrame {
     Point<double> origin{0, 0};
     Matrix2 to_source{1, 0, 0, 1};
@@ -18,11 +19,11 @@ struct PlaneFrame {
 
     Point<double> source(const Point<double>& z) const { return origin + to_source(z); }
     Point<Interval> source(const Point<Interval>& z) const;
-    /// By how much rounding may move the parameters of a point that are no larger than these.
+    /// The largest rounding of the parameters of a point that are no larger than these.
     double rounding(const Point<double>& z) const;
 };
 
-/// Pixels, x right, y down, pixel centres at + 0.5.
+/// A formula that pushes. Pixels, x right, y down, pixel centres at + 0.5.
 class PushedFormula {
   public:
     /// `formula`: target pixels of a picture of size `picture`, at source pixels. `target`: the pixels that the picture has.
@@ -79,7 +80,7 @@ inline double half_of(const Interval& a) {
 inline double middle_of(const Interval& a) {
     return 0.5 * (a.lo + a.hi);
 }
-/// The members of both.
+/// The interval of the members that both intervals have.
 inline Interval common(const Interval& a, const Interval& b) {
     return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
 }

@@ -232,14 +232,15 @@ struct TermSizes {
             of[degree] = std::max(x, y);
         }
     }
-    /// Of N at r, and its slope.
+    /// The size of N at r; slope() is that of its slope.
     double beyond_linear(double r) const { return ((of[4] * r + of[3]) * r + of[2]) * r * r; }
     double slope(double r) const { return ((4 * of[4] * r + 3 * of[3]) * r + 2 * of[2]) * r; }
 };
 
 }  // namespace
 
-/// As pushed_map.h has it, in norms of the larger coordinate, for all members of a box at once.
+/// Reads jets with their rounding as pushed_map.h has it, in norms of the larger coordinate, for all members
+/// of a box at once.
 ///
 /// The ball. v - N(z) + (I - J) z leads a ball of radius r into itself where |v| + e r + n(r) <= r, with e that of I - J and n(r) the sum
 /// of N's terms at r; c = e + n'(r).

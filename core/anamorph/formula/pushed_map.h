@@ -25,7 +25,7 @@
 
 namespace anamorph {
 
-/// Pixels, x right, y down, pixel centres at + 0.5.
+/// The inverse of a formula that pushes. Pixels, x right, y down, pixel centres at + 0.5.
 class PushedMap {
   public:
     /// Source points cost most: a chord is the formula once, and takes some twelve of them.
@@ -38,13 +38,15 @@ class PushedMap {
                                       .double_pixel = 0.02};
     static constexpr std::size_t kMostParts = std::size_t{1} << 19;
 
-    /// A box of the target, and one of a frame's parameters where the formula has one root for each of its points.
+    /// A box of the target, and a box of a frame's parameters where the formula has one root for each of its
+    /// points.
     struct Roots {
         Interval x, y;
         Point<Interval> z;
         Linear<Interval> bend;  ///< g' - I over the box
     };
-    /// About a root: with the inverse of the formula's derivative there; and what was found last of a box that holds it.
+    /// What is known about a root: the inverse of the formula's derivative there, and what was found last of
+    /// a box that holds it.
     struct Local {
         Point<double> target{};
         PlaneFrame frame{};
@@ -60,7 +62,7 @@ class PushedMap {
     Size target_size() const { return m_target; }
     Size source_size() const { return m_sheets.source_size(); }
     std::vector<Box> target_pieces() const { return {{0, 0, m_target.width, m_target.height}}; }
-    /// The source ends at its edges.
+    /// The edges of the source, where it ends.
     SourceEdges source_edges() const { return {}; }
     int source_piece(const Local&) const { return 0; }
     int period() const { return 0; }
@@ -94,15 +96,16 @@ class PushedMap {
 
     const PushedFormula& formula() const { return m_sheets.formula(); }
     Preimages preimages(double x, double y) const { return m_sheets.preimages(x, y); }
-    /// A box of the source with all points of a box of the target; nothing near a fold.
+    /// A box of the source that holds all source points of a box of the target; nothing near a fold.
     std::optional<PushedSheets::Reached> source_points(const Interval& x, const Interval& y) const {
         return m_sheets.reached(x, y, {});
     }
-    /// The pixels of a box that have no source point.
+    /// The number of pixels of a box that have no source point.
     std::int64_t undefined_pixels(const Box& box) const;
 
   private:
-    /// The parameters of all source points of a box. False where they are not known to be the roots of one function.
+    /// Finds the parameters of all source points of a box. False where they are not known to be the roots of
+    /// one function.
     bool find_roots(const Interval& x, const Interval& y, const Local& local, Point<Interval>& z) const;
     std::optional<Roots> roots(const Interval& x, const Interval& y, const Local& local) const;
     Linear<Interval> bend_over(const Point<Interval>& z, const PlaneFrame& frame, double most) const;

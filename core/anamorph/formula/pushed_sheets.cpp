@@ -24,7 +24,7 @@ constexpr std::size_t kMostVisits = std::size_t{1} << 14;
 // Sheets are looked at without their outermost this many source pixels, or this part of them, which count as their hair: so a jump
 // along an edge of theirs is none. What jumps and is no wider than a sliver is left out.
 constexpr double kGap = 0x1p-28, kGapShare = 0x1p-7, kSliver = 0x1p-27;
-// Of a determinant, over the square of its largest entry: below, its inverse is not computed.
+// The least size of a determinant over the square of its largest entry: below, its inverse is not computed.
 constexpr double kRegular = 1e-13;
 // Parts are cut where they bend, if Y f' - I is less than this, and they are at most so many times longer one way in the target.
 constexpr double kLittle = 4, kThin = 16;
@@ -130,7 +130,8 @@ class PushedSheets::Cell {
         return largest(at_to - at_from) > kJump;
     }
 
-    /// Of a part that jumps or has a crease: which way would more halves be smooth? Not where it is thin already.
+    /// Which way would more halves of a part be smooth that jumps or has a crease? Not the way in which it is
+    /// thin already.
     bool cuts_to_smooth_halves(const Part& s, const Part& t, bool otherwise) const {
         int smooth[2] = {};
         for (const bool cut_s : {false, true})
@@ -398,8 +399,9 @@ double PushedSheets::exact_error(const Interval& x, const Interval& y) const {
 template double PushedSheets::exact_error<double>(const Interval&, const Interval&) const;
 template double PushedSheets::exact_error<long double>(const Interval&, const Interval&) const;
 
-/// Of chords in long double from the point in double: each leaves kContraction of its error in a sheet's parameters, and adds |Y|
-/// times what rounding makes of the formula there, and that of positions.
+/// Bounds the error of chords in long double from the point in double: each leaves kContraction of its error
+/// in a sheet's parameters, and adds |Y| times what rounding makes of the formula there, and that of
+/// positions.
 double PushedSheets::precise_error(const Interval& x, const Interval& y) const {
     using R = Rounded<long double>;
     const double size = double(m_source.width) + m_source.height;

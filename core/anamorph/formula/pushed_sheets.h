@@ -14,31 +14,32 @@
 
 namespace anamorph {
 
-/// Pixels, as those of PushedFormula.
+/// The sheets of a PushedFormula, in its pixels.
 class PushedSheets {
   public:
-    /// What errors call a source point.
+    /// A function that says what errors call a source point.
     using NamePlace = std::string (*)(const Point<double>& source);
-    /// Throws Error where the formula folds, jumps or ends at so many places that the source would be cut into more parts than that.
-    /// Nor are more looked at for one point.
+    /// Throws Error where the formula folds, jumps or ends at so many places that the source would be cut
+    /// into more than `most_parts`. No more are looked at for one point.
     PushedSheets(PushedFormula formula, const Size& target, const Size& source, std::size_t most_parts,
                  NamePlace name_place = pixel_name);
-    /// "source pixel 12,40"
+    /// Names a source point by its pixel: "source pixel 12,40".
     static std::string pixel_name(const Point<double>& source);
 
     const PushedFormula& formula() const { return m_formula; }
     const Size& source_size() const { return m_source; }
 
-    /// All source points of a target point. The best of them: those where the map is not turned over first, of these the lowest, of
-    /// these the rightmost.
+    /// Finds all source points of a target point, and the best of them: those where the map is not turned
+    /// over first, of these the lowest, of these the rightmost.
     Preimages preimages(double x, double y) const;
-    /// The best one. False where there is none.
+    /// Finds the best source point of a target point. False where there is none.
     template <std::floating_point Real>
     bool exact(const Real& x, const Real& y, Point<Real>& p) const;
 
-    /// Bounds the error of source points in double, of a box that no fold is near; else there is none.
+    /// Bounds the error of source points in double over a box; none where a fold is near.
     std::optional<double> error(const Interval& x, const Interval& y) const;
-    /// The same of exact() in Real, kept in double; near folds by looking at all pixels of the box.
+    /// Bounds the error of exact() in Real, kept in double, over a box; near folds by looking at all pixels
+    /// of the box.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y) const;
 
@@ -55,7 +56,7 @@ class PushedSheets {
             return z.x.hi - z.x.lo > 2.1 * halves.x + 1 || z.y.hi - z.y.lo > 2.1 * halves.y + 1;
         }
     };
-    /// Nothing where a fold is near.
+    /// The parameters of all source points of a box of the target; nothing where a fold is near.
     std::optional<Reached> reached(const Interval& x, const Interval& y, const PlaneFrame& frame) const;
 
   private:

@@ -57,10 +57,11 @@ class TextMap : public PlaneMap<TextMap> {
     const FormulaProgram& program() const { return m_formula.point; }
     const PixelScale& scale() const { return m_scale; }
 
-    /// The points (x + i, y): as exact() has them, within the same bound. `piece` is 0, or -1 where there is no source point.
+    /// Finds the source points of the points (x + i, y) as exact() does, within the same bound. `piece` is 0,
+    /// or -1 where there is no source point.
     void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
 
-    /// The pixels of a box whose middles have no source point, wherever the source ends.
+    /// The number of pixels of a box whose middles have no source point, wherever the source ends.
     std::int64_t undefined_pixels(const Box& box) const;
 
   private:

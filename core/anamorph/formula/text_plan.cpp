@@ -29,7 +29,7 @@ void TextPlan::exact_rows(const Block& block, int begin, int end, const DoubleRo
     exact_rows_by_vectors(map(), block, begin, end, to);
 }
 
-/// Of a part of a block, counted from its corner.
+/// Reads a part of a block, counted from its corner.
 void TextPlan::direct_rows(const Block& block, const Box& part, const PointRows& to) const {
     const NearBlock<TextMap::Local, float> near = near_in_float(block);
     const Point<float> middle{static_cast<float>(near.middle.x - block.base_x),

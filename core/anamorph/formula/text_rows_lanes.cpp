@@ -149,7 +149,7 @@ void SetRests(const TextBlock<Real>& block, int left, int top, int width, int ro
     std::fill(y.rest + rows * width, y.rest + kTextRow, highest);
 }
 
-/// As many rows at once as there is room for.
+/// Computes as many rows at once as there is room for.
 void ComputeTextRows(const TextBlock<float>& block, const Box& part, const PointRows& to) {
     const int width = part.width(), most = std::max(1, kTextRow / width);
     Pixels<float> x, y;

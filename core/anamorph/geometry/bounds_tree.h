@@ -47,12 +47,12 @@ class BoundsTree {
 
   private:
     static constexpr std::size_t kLeaf = 4;
-    /// The nodes are in depth-first order: the first child follows its parent; `next` is the node after
-    /// all descendants.
+    /// A node of the tree. Nodes are in depth-first order: the first child follows its parent; `next` is the
+    /// node after all descendants.
     struct Node {
         Bounds bounds;
         std::size_t next;
-        std::size_t first = 0, last = 0;  ///< of the order; empty for an inner node
+        std::size_t first = 0, last = 0;  ///< range of the order; empty for an inner node
     };
 
     void build(std::size_t first, std::size_t last) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many pixels of a box have a property that is known of whole boxes.
+// Counts the pixels of a box that have a property which is known of whole boxes.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace anamorph {
 
-/// `certainty(box)`: do all pixels have it, none, or is it not known? Then halves are looked at, down to boxes that are small, as
-/// is_small(box) says; count(box) looks at their pixels one by one.
+/// Counts the pixels of a box that have a property. `certainty(box)`: do all of its pixels have it, none, or
+/// is it not known? Where it is not, halves are looked at, down to boxes that are small, as is_small(box)
+/// says; count(box) looks at their pixels one by one.
 template <class OfBox, class IsSmall, class Count>
 std::int64_t count_pixels(const Box& box, const OfBox& certainty, const IsSmall& is_small,
                           const Count& count) {

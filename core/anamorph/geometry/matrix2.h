@@ -9,7 +9,7 @@
 
 namespace anamorph {
 
-/// Leads (x, y) to (a11 x + a12 y, a21 x + a22 y).
+/// A linear map of the plane: it leads (x, y) to (a11 x + a12 y, a21 x + a22 y).
 struct Matrix2 {
     double a11, a12, a21, a22;
 
@@ -18,7 +18,7 @@ struct Matrix2 {
     Point<double> operator()(const Point<double>& p) const { return (*this)(p.x, p.y); }
     /// The largest sum of a row's magnitudes.
     double norm() const { return std::max(std::fabs(a11) + std::fabs(a12), std::fabs(a21) + std::fabs(a22)); }
-    /// Of magnitudes: what a box of half sizes (x, y) spans.
+    /// The half sizes that a box of half sizes (x, y) spans when it is mapped.
     Point<double> span(double x, double y) const {
         return {std::fabs(a11) * x + std::fabs(a12) * y, std::fabs(a21) * x + std::fabs(a22) * y};
     }

@@ -11,7 +11,7 @@
 
 namespace anamorph {
 
-/// So many texels on each side of the one that a point falls into may be read.
+/// The number of texels on each side of the one that a point falls into that may be read.
 constexpr int support_of(simd::Kernel kernel) {
     return kernel == simd::Kernel::bicubic ? 2 : kernel == simd::Kernel::bilinear ? 1 : 0;
 }
@@ -32,11 +32,12 @@ class ApartReader {
         friend ApartReader;
         simd::Offsets offsets() const { return {rest_x, rest_y, count, texel_x, texel_y}; }
 
-        alignas(64) std::int32_t texel_x[simd::kRowRoom], texel_y[simd::kRowRoom];  ///< in the window
+        alignas(64) std::int32_t texel_x[simd::kRowRoom], texel_y[simd::kRowRoom];  ///< texels in the window
         alignas(64) float rest_x[simd::kRowRoom], rest_y[simd::kRowRoom];
         Window window;
         std::vector<std::byte> texels;  ///< the window's own
-        /// Where the texels that points fall into stand in memory, if they are still to be copied from there; else null.
+        /// The places in memory of the texels that points fall into, if they are still to be copied from
+        /// there; else null.
         const std::byte* from[simd::kMaxRow];
         std::ptrdiff_t from_stride = 0;
 
@@ -47,9 +48,9 @@ class ApartReader {
     /// Finds a row's texels, for a filter that reads one tap, and brings them near. False when the source could not be
     /// read.
     bool locate(Row& row, simd::Kernel kernel);
-    /// The pixels of a row, once after it was located, channel by channel, to `values`, which has room for simd::kMaxRow * channels
-    /// + 16 floats; 0 where there is no point. A pixel's bits depend on its own point only. Returns the type whose units
-    /// they have (simd::sample_row).
+    /// Samples the pixels of a row, once after it was located, channel by channel, into `values`, which has
+    /// room for simd::kMaxRow * channels + 16 floats; 0 where there is no point. A pixel's bits depend on its
+    /// own point only. Returns the type whose units they have (simd::sample_row).
     PixelType sample(Row& row, simd::Kernel kernel, float* values) const;
 
   private:

@@ -8,7 +8,7 @@
 
 namespace anamorph {
 
-/// What a picture says of itself: "anamorph:max_error" and so on.
+/// A fact that a picture says of itself: "anamorph:max_error" and so on.
 struct Attribute {
     std::string name;
     std::variant<int, double, std::string> value;

@@ -149,7 +149,7 @@ class Steps {
     Box m_size;
 };
 
-/// Of one coordinate of a block's points, over a cell counted from its corner.
+/// The ends of one coordinate of a block's points, over a cell counted from its corner.
 template <class Real>
 simd::Ends ends_over(const Real* values, std::ptrdiff_t stride, const Box& cell) {
     return simd::ends_of(
@@ -421,7 +421,7 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
     return got == Got::too_large ? rows(block, part, store) : got == Got::window;
 }
 
-/// Where all pixels of a block share a filter and a window.
+/// Draws a polynomial block where all its pixels share a filter and a window.
 BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& part, const Canvas& canvas) {
     const Filtering f = filtering(jacobian_of(block));
     const BlockPolynomial of_source = polynomial_of(m_map, block);
@@ -451,7 +451,8 @@ bool BlockReader::filtering_of(const Block& block, const PixelPoints<Real>& poin
     return true;
 }
 
-/// The same with its points at hand, read on the source itself.
+/// Draws a block whose points are at hand, read on the source itself, where its pixels share a filter and a
+/// window.
 BlockReader::Got BlockReader::draw_points(const Block& block, const BlockPoints& points, const Box& part,
                                           const Canvas& canvas) {
     Filtering f;
@@ -468,7 +469,7 @@ BlockReader::Got BlockReader::draw_points(const Block& block, const BlockPoints&
     return got;
 }
 
-/// The same with points in double.
+/// Draws a block whose points are in double, where its pixels share a filter and a window.
 BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part, const Canvas& canvas) {
     const PixelPoints<double> points = m_exact.points();
     Filtering f;
@@ -661,7 +662,7 @@ bool BlockReader::pixels_of_cell(const Block& block, const Box& cell, const Box&
     return ok;
 }
 
-/// Of the points of a cell. False where they are too far away.
+/// Finds the ranges of the points of a cell. False where they are too far away.
 bool BlockReader::ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x,
                             Range& y) {
     x = ends_over(points.x, points.row_stride, cell);
@@ -773,7 +774,7 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
     return for_each_footprint(block, at, part, row, body);
 }
 
-/// Of the points of a cell that were read in double. False where they are too far away.
+/// Finds the ranges of the points of a cell that were read in double. False where they are too far away.
 bool BlockReader::ranges_in_double(const Box& cell, Range& x, Range& y) const {
     const PixelPoints<double> points = m_exact.points();
     x = ends_over(points.x, points.row_stride, cell);

@@ -102,7 +102,8 @@ class BlockReader {
     /// Gives the pixels of `part` of a block to `row`, row by row; those without a source point are 0. False when the source
     /// could not be read.
     bool rows(const Block& block, const Box& part, const Row& row);
-    /// Gives the pixels of `part` of a computed block to `row`, as above, from its points, which are known already.
+    /// Gives the pixels of `part` of a computed block to `row`, row by row, from its points, which are known
+    /// already.
     bool rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
 
     /// Draws `part` of a block.
@@ -116,7 +117,7 @@ class BlockReader {
         simd::Kernel kernel = simd::Kernel::bilinear;
         int tap_count = 1;
         std::array<simd::Tap, simd::kMaxTaps> taps{};
-        double reach_x = 0, reach_y = 0;  ///< of the taps, level texels
+        double reach_x = 0, reach_y = 0;  ///< reach of the taps, level texels
     };
     using Range = simd::Ends;
     /// Points as whole texels and rests.
@@ -205,12 +206,12 @@ class BlockReader {
         int x = 0, y = 0, piece = -1;
         Jacobian derivative;
     };
-    std::array<Corner, 64> m_corners;  ///< of pixels, the last ones that were asked for
-    std::vector<float> m_part;         ///< of a pixel
+    std::array<Corner, 64> m_corners;  ///< derivatives at pixels' corners, the last ones asked for
+    std::vector<float> m_part;         ///< a part of a pixel
     std::vector<double> m_parts;
     std::optional<BlockPlanes> m_planes;
-    PointsInDouble m_exact;              ///< of the block that is being read
-    std::vector<std::int32_t> m_texels;  ///< the texels they fall into, and the rests
+    PointsInDouble m_exact;              ///< points of the block that is being read
+    std::vector<std::int32_t> m_texels;  ///< the texels that points fall into; m_rests has the rests
     std::vector<float> m_rests;
     std::vector<Point<int>> m_over_edge;
 };

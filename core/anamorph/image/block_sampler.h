@@ -30,8 +30,8 @@ struct Polynomials {
     const std::int32_t *whole_x = nullptr, *whole_y = nullptr;
 };
 
-/// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is
-/// room for kRowRoom floats in each array.
+/// Finds the source points of pixels [begin, end) of row `row`: offsets from the block's base in texels.
+/// There is room for kRowRoom floats in each array.
 void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y);
 
 enum class Kernel : std::uint8_t { nearest, bilinear, bicubic };
@@ -41,16 +41,17 @@ struct Tap {
     float x = 0, y = 0;
 };
 
-/// What a block reads: `texels` points at the texel that offset (0, 0) falls into; all texels that the
-/// pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read. Bilinear
-/// pixels need the texel a tap falls into and its neighbours on every side, bicubic ones also the next.
+/// The texels that a block reads: `texels` points at the texel that offset (0, 0) falls into; all texels that
+/// the pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read.
+/// Bilinear pixels need the texel a tap falls into and its neighbours on every side, bicubic ones also the
+/// next.
 struct Texels {
     const std::byte* texels = nullptr;
     std::ptrdiff_t row_stride = 0;
     PixelType type = PixelType::float32;
     int channels = 0;
     Kernel kernel = Kernel::bilinear;
-    /// At most kMaxTaps (one for nearest and bicubic).
+    /// The taps of a pixel, at most kMaxTaps (one for nearest and bicubic).
     const Tap* taps = nullptr;
     int tap_count = 1;
     /// Do neighbouring pixels read texels far apart?
@@ -58,7 +59,7 @@ struct Texels {
 };
 inline constexpr int kMaxTaps = 64;
 
-/// Rows of pixels longer than this do not occur.
+/// The most pixels that a row has.
 inline constexpr int kMaxRow = 64;
 
 /// Offsets of `count` <= kMaxRow pixels in texels (centres at + 0.5): (x[i], y[i]), or (whole_x[i] + x[i],
@@ -68,16 +69,17 @@ struct Offsets {
     int count;
     const std::int32_t *whole_x = nullptr, *whole_y = nullptr;
 };
-/// Arrays of Offsets have room for this many pixels.
+/// The number of pixels that arrays of Offsets have room for.
 inline constexpr int kRowRoom = kMaxRow + 16;
 
 /// Samples a row of pixels into `out`: `channels` floats a pixel, in units of the source's type (0..255 for
 /// uint8). `out` has room for kMaxRow * channels + 16 floats.
 void sample_row(const Texels& texels, const Offsets& offsets, float* out);
 
-/// Brings near what sample_row is to read of a row by one tap.
+/// Prefetches what sample_row is to read of a row by one tap.
 void fetch_row(const Texels& texels, const Offsets& offsets);
-/// The same of `count` pixels, each with texels of its own: texels[i] is the one that it falls into, y[i] far down, or null.
+/// Prefetches what `count` pixels read by one tap, each with texels of its own: texels[i] is the one that it
+/// falls into, y[i] far down, or null.
 void fetch_row(const std::byte* const* texels, const float* y, int count, std::ptrdiff_t row_stride);
 
 /// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row

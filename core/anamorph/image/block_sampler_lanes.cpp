@@ -59,7 +59,7 @@ HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p) {
     return LoadFloats(Quad(), p);
 }
 
-/// The same for `count` points from `first` on, moved by a tap and back by `shift`.
+/// Finds the positions of `count` points from `first` on, moved by a tap and back by `shift`.
 template <int kCount>
 HWY_INLINE void Locate(const Offsets& at, int first, int count, const Tap& tap, float shift, int channels,
                        int32_t row_elements, Positions<kCount>& p) {
@@ -258,12 +258,12 @@ HWY_INLINE bool NeedsMending(const Texels& s) {
     return s.kernel != Kernel::nearest && (s.type == PixelType::half || s.type == PixelType::float32);
 }
 
-/// The same of a row that may have such channels.
+/// Mends a row that may have such channels.
 HWY_INLINE void Mend(const Texels& s, const Offsets& at, float* out) {
     if (NeedsMending(s) && !AllFinite(out, at.count * s.channels)) MendChannels(s, at, out);
 }
 
-/// The same of a row of a drawing.
+/// Mends a row of a drawing that may have such channels.
 HWY_INLINE void MendRow(const Drawing& to, int row, float* values) {
     if (!NeedsMending(to.texels) || AllFinite(values, (to.end - to.begin) * to.texels.channels)) return;
     HWY_ALIGN float x[kRowRoom], y[kRowRoom];

@@ -12,7 +12,7 @@
 
 namespace anamorph {
 
-/// What stands beyond the edge of an image, where the image has no texels there itself.
+/// The ways in which an image goes on beyond its edge, where it has no texels there itself.
 ///
 /// automatic follows the chart (across +-180 degrees, over the poles, across cube edges) and is black
 /// elsewhere; where a full turn fills rows of different lengths (sinusoidal, Hammer), a row goes on at the

@@ -12,7 +12,7 @@
 
 namespace anamorph {
 
-/// The value of this type that stands for 1.
+/// The value of a type of pixels that stands for 1.
 inline float one_of(PixelType type) {
     return type == PixelType::uint8 ? 255.0f : type == PixelType::uint16 ? 65535.0f : 1.0f;
 }
@@ -36,7 +36,7 @@ class Canvas {
     bool packed() const { return m_view.packed(); }
     std::ptrdiff_t row_stride() const { return m_view.row_stride; }
     std::byte* at(int x, int y) const { return m_view.at(x - m_box.x0, y - m_box.y0); }
-    /// The factor from values of which `one` stands for 1.
+    /// The factor that leads from values of which `one` stands for 1 to those of the view.
     float scale_from(float one) const { return one_of(m_view.type) / one; }
 
     /// Writes at most simd::kMaxRow pixels of a row from x on; `one` is the value that stands for 1.

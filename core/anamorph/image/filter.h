@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a source is read between its pixels.
+// The ways in which a source is read between its pixels.
 #pragma once
 
 namespace anamorph {

@@ -64,8 +64,9 @@ class FootprintChooser {
 
     explicit FootprintChooser(const Source& source);
 
-    /// One bilinear tap on level 0 where the map magnifies, or is no map (not finite). At most kMaxTaps taps:
-    /// a coarser level is taken instead, and on the coarsest the average is thinner than the footprint.
+    /// Chooses a footprint: one bilinear tap on level 0 where the map magnifies, or is no map (not finite).
+    /// At most kMaxTaps taps: a coarser level is taken instead, and on the coarsest the average is thinner
+    /// than the footprint.
     Footprint operator()(const Jacobian& jacobian) const noexcept;
 
     /// The number of levels in use: those of the source as far as none is larger than level 0, nor more than four times

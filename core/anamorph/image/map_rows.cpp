@@ -96,8 +96,9 @@ class SourceImage {
     }
 
   private:
-    /// The same point of a source that goes on past its edges: around the seam by full turns; at poles and
-    /// cube edges, which exact points do not cross, on the edge, which is nearer to them.
+    /// Moves a point of a source that goes on past its edges to the same point within: around the seam by
+    /// full turns; at poles and cube edges, which exact points do not cross, on the edge, which is nearer to
+    /// them.
     Point<double> inside(Point<double> p) const {
         if (m_period < HUGE_VAL && (p.x < 0 || p.x > m_width)) p.x -= std::floor(p.x / m_period) * m_period;
         if (m_cube) p.x = std::clamp(p.x, 0.0, m_width);

@@ -21,7 +21,7 @@
 
 namespace anamorph::simd {
 
-/// What draw_block was asked to draw.
+/// The arguments of draw_block.
 struct Drawing {
     const Texels& texels;
     const Polynomials& block;
@@ -32,7 +32,7 @@ struct Drawing {
     std::ptrdiff_t row_stride;
 };
 
-/// Draws it, if it is a block of this kind and the processor has vectors for it.
+/// Draws a block if it is of the kind above and the processor has vectors for it.
 bool draw_packed_block(const Drawing& drawing);
 
 }  // namespace anamorph::simd

@@ -52,15 +52,16 @@ struct PixelRows {
     }
 };
 
-/// Ready to draw any box in any order from any number of threads: the bits of a pixel depend on nothing but
-/// the members and the sources.
+/// A picture that is ready to draw any box in any order from any number of threads: the bits of a pixel
+/// depend on nothing but the members and the sources.
 struct Picture {
     /// A source seen through one layer of a map.
     struct Layer {
         Border border;      ///< knows the source's chart, which has the size of its level 0
-        int source = 0;     ///< which one of those that draw() is given
-        double weight = 1;  ///< of its colour; the sum over all layers is 1
-        /// Where it is given: how often `weight` that is at each pixel of a box, row by row. False where it is 0 everywhere.
+        int source = 0;     ///< position among the sources that draw() is given
+        double weight = 1;  ///< weight of its colour; the sum over all layers is 1
+        /// The factor of `weight` at each pixel of a box, row by row, where it is not 1. False where it is 0
+        /// everywhere.
         std::function<bool(const Box& box, float* weights)> weights = {};
     };
     /// A map, and what is seen through each of its layers.
@@ -69,20 +70,21 @@ struct Picture {
         std::vector<Layer> layers;  ///< as many as the map has
     };
 
-    /// The maps that it is drawn through, at least one; all cover the same pixels of the same target. ST-maps need a single layer.
+    /// The maps that the picture is drawn through, at least one; all cover the same pixels of the same
+    /// target. ST-maps need a single layer.
     std::vector<Map> maps;
     Filter filter = Filter::antialias;
     Output output = Output::color;
-    /// Where it is given, the picture shows what it says of each pixel's centre, in one channel, in place of
-    /// `output`.
+    /// A function of each pixel's centre that the picture shows, in one channel, in place of `output`, where
+    /// it is given.
     std::function<float(double x, double y)> value;
     /// Draws over the colours before they are stored.
     std::function<void(const PixelRows& pixels)> overlay;
     /// A source that is the picture as it stands, pixel for pixel and whatever the filter.
     std::optional<int> same_as;
-    /// Where it is given: how many sources draw() has to be given, null or not.
+    /// The number of sources, null or not, that draw() has to be given, where it is fixed.
     std::optional<int> source_count = {};
-    /// Where it is given: what the picture says of itself beyond what was reached, over all of it.
+    /// Finds what the picture says of itself, over all of it, beyond what was reached.
     std::function<Attributes(const ParallelFor& parallel_for)> says = {};
     /// Does reached() compute every pixel, so that it takes as long as drawing all of them?
     bool reached_by_drawing = false;

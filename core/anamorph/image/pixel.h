@@ -29,7 +29,7 @@ inline float value(std::uint16_t stored) noexcept {
     return static_cast<float>(stored) / 65535.0f;
 }
 
-/// The nearest of 0..limit for 0..1, halves upwards; NaN gives 0.
+/// The nearest whole number to value * limit in 0..limit, halves upwards; NaN gives 0.
 template <class T>
 T normalised(float value, float limit) noexcept {
     if (!(value > 0)) return 0;
@@ -51,8 +51,8 @@ inline float load_channel(const std::byte* channel, PixelType type) noexcept {
     }
 }
 
-/// Clamps to 0..1 and rounds to nearest for uint8 and uint16 (NaN becomes 0), rounds to nearest even for
-/// half.
+/// Stores a channel: clamped to 0..1 and rounded to nearest for uint8 and uint16 (NaN becomes 0), rounded to
+/// nearest even for half.
 inline void store_channel(float value, std::byte* channel, PixelType type) noexcept {
     switch (type) {
         case PixelType::uint8:
@@ -70,7 +70,7 @@ inline void store_channel(float value, std::byte* channel, PixelType type) noexc
     }
 }
 
-/// `count` channels that stand next to each other, to float.
+/// Loads `count` channels that stand next to each other as floats.
 inline void load_channels(const std::byte* channels, PixelType type, std::int64_t count,
                           float* values) noexcept {
     // A loop for each type, so that it can be vectorised.

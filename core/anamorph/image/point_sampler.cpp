@@ -94,7 +94,7 @@ bool PointSampler::sample(Filter filter, int level, int piece, double x, double 
     return true;
 }
 
-/// The same, from a window that has the texels.
+/// Samples the source from a window that has the texels.
 void PointSampler::sample(Filter filter, const Window& window, double x, double y, float* pixel) noexcept {
     const int channels = m_source.channels();
     std::fill_n(pixel, channels, 0.0f);

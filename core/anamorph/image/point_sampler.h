@@ -19,7 +19,7 @@ std::array<T, 2> bilinear_weights(T t) {
     return {1 - t, t};
 }
 
-/// Catmull-Rom: weights of the four texels around a point, `t` in [0, 1) from the second one's centre to the
+/// Catmull-Rom weights of the four texels around a point, `t` in [0, 1) from the second one's centre to the
 /// third one's. Keys 1981, eq. 4 with a = -1/2.
 template <class T>
 std::array<T, 4> catmull_rom_weights(T t) {
@@ -35,20 +35,20 @@ class PointSampler {
     /// `border` is that of the source.
     PointSampler(const Source& source, const Border& border);
 
-    /// The source at (x, y), in pixels of `level` (texel centres at + 0.5), on `piece`, which may be left
-    /// over every edge: channels() floats to `pixel`, colour multiplied by alpha where the source has
-    /// unassociated alpha (unassociate_alpha undoes it). A texel of weight zero is not looked at; a point
+    /// Samples the source at (x, y), in pixels of `level` (texel centres at + 0.5), on `piece`, which may be
+    /// left over every edge: writes channels() floats to `pixel`, colour multiplied by alpha where the source
+    /// has unassociated alpha (unassociate_alpha undoes it). A texel of weight zero is not looked at; a point
     /// that is not a number gives zeros. Filter::antialias reads as bilinear. False when the source could not
     /// be read.
     bool sample(Filter filter, int level, int piece, double x, double y, float* pixel) noexcept;
 
-    /// The mean of the footprint's taps around (x, y), in pixels of level 0; `jacobian` as given to the
-    /// footprint.
+    /// Samples the mean of the footprint's taps around (x, y), in pixels of level 0; `jacobian` as given to
+    /// the footprint.
     bool sample(const Footprint& footprint, const Jacobian& jacobian, int piece, double x, double y,
                 float* pixel) noexcept;
 
-    /// (x, y), in pixels of level 0, by any filter, for a pixel that takes steps of `jacobian` there; `chooser` is the
-    /// source's. Filter::summed_area is for sources of one piece.
+    /// Samples the source at (x, y), in pixels of level 0, by any filter, for a pixel that takes steps of
+    /// `jacobian` there; `chooser` is the source's. Filter::summed_area is for sources of one piece.
     bool sample(Filter filter, const FootprintChooser& chooser, const Jacobian& jacobian, int piece, double x,
                 double y, float* pixel) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a resampler gets its texels: an image in memory, a file behind a cache, a pyramid over either.
+// The sources of a resampler's texels: an image in memory, a file behind a cache, a pyramid over either.
 #pragma once
 
 #include "anamorph/geometry/size.h"

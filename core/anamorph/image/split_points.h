@@ -9,9 +9,10 @@
 
 namespace anamorph::simd {
 
-/// Of `count` points of one coordinate, times `scale`: the texel each falls into, less `base`, and the rest as a float
-/// below 1, which loses at most half of 2^-24 texels; all of it where float would round it to the next texel. What is
-/// split lies within 2^30 texels of 0. Arrays have room for 16 more. The same bits on all instruction sets.
+/// Splits `count` points of one coordinate, times `scale`, into the texel that each falls into, less `base`,
+/// and the rest as a float below 1, which loses at most half of 2^-24 texels; all of it where float would
+/// round it to the next texel. What is split lies within 2^30 texels of 0. Arrays have room for 16 more. The
+/// same bits on all instruction sets.
 void split_points(const double* points, int count, double scale, std::int32_t base, std::int32_t* texels,
                   float* rests);
 
@@ -30,8 +31,8 @@ struct Ends {
 Ends ends_of(const ValueRows<float>& rows);
 Ends ends_of(const ValueRows<double>& rows);
 
-/// Where the texels of pixels may be read: in `box`, for each those up to `reach` <= 2 away from its own, both ways. Rows of
-/// `width` texels follow on themselves after `turn`, if that is not 0.
+/// The texels that may be read: those in `box`. Each pixel reads those up to `reach` <= 2 away from its own,
+/// both ways. Rows of `width` texels follow on themselves after `turn`, if that is not 0.
 struct Readable {
     Box box;
     int reach, width, turn;

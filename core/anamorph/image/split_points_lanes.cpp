@@ -27,7 +27,8 @@ void SplitPoints(const double* HWY_RESTRICT points, int count, double scale, std
     }
 }
 
-/// Of some values at once: lane by lane, and what is NaN where one is not finite (minima may lose a NaN).
+/// The ends of some values at once: lane by lane, and a number that is NaN where one is not finite (minima
+/// may lose a NaN).
 template <class D>
 struct LaneEnds {
     hn::Vec<D> least, greatest, nothing;
@@ -40,7 +41,7 @@ struct LaneEnds {
     }
 };
 
-/// Of rows at least as wide as a vector of D; the last vector of each may have values twice.
+/// The ends of rows at least as wide as a vector of D; the last vector of each may have values twice.
 template <class D, class Real>
 HWY_INLINE Ends EndsIn(D d, const ValueRows<Real>& rows) {
     const auto at = [&](const Real* p) HWY_ATTR {

@@ -32,7 +32,7 @@ class StripSource final : public Source {
 
   private:
     struct Level {
-        int first;  ///< row of the base
+        int first;  ///< first row in the base
         Size size;
         ConstImageView view;  ///< without data where the base has none
     };

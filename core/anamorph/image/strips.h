@@ -13,14 +13,14 @@ namespace anamorph {
 /// The blocks of one region that begin in some of its rows: the work of one thread.
 class Strip {
   public:
-    /// `rows`: of a region, as wide as that.
+    /// Makes a strip. `rows`: a part of a region that is as wide as the region.
     Strip(const SharedBlocks& blocks, const Box& rows, const Box& box)
         : m_blocks(blocks), m_rows(rows), m_box(box) {}
 
-    /// The part of the box that lies in those rows.
+    /// The part of the box that lies in the strip's rows.
     Box box() const { return intersection(m_rows, m_box); }
 
-    /// body(block, part) for every block that meets the box, in `part`.
+    /// Calls body(block, part) for every block that meets the box, in `part`.
     template <class Body>
     void for_each_block(const Body& body) const {
         for (const Block& block : m_blocks) {
@@ -39,9 +39,9 @@ class Strip {
     Box m_rows, m_box;
 };
 
-/// body(strip) for strips that together hold every block that meets `box`. A small region is one strip. Of
-/// larger ones plans come first in the same loop, so that threads neither wait for each other's plan nor meet
-/// in between.
+/// Calls body(strip) for strips that together hold every block that meets `box`. A small region is one strip.
+/// Of larger ones plans come first in the same loop, so that threads neither wait for each other's plan nor
+/// meet in between.
 template <class Body>
 void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& parallel_for, const Body& body) {
     struct Work {
@@ -78,7 +78,7 @@ void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& para
     }
 }
 
-/// body(square) for the squares that together are a box: work without blocks.
+/// Calls body(square) for the squares that together are a box: work without blocks.
 template <class Body>
 void for_each_square(const Box& box, const ParallelFor& parallel_for, const Body& body) {
     if (box.empty()) return;

@@ -49,7 +49,7 @@ class Runs {
     void add(int first, int end, double weight) {
         if (first < end && weight > 0) m_runs[m_count++] = {first, end, weight};
     }
-    /// Of 0 to the size: a part of a texel, whole ones, a part of another.
+    /// Adds what is from 0 to the size: a part of a texel, whole ones, a part of another.
     void add_within(double from, double to) {
         if (!(from < to)) return;
         const int first = std::min(static_cast<int>(from), m_size - 1), last = static_cast<int>(to);
@@ -76,7 +76,7 @@ class Runs {
     int m_count = 0;
 };
 
-/// Of what is not finite: no number, +infinite, -infinite.
+/// The kind of a number that is not finite: no number, +infinite, -infinite.
 std::size_t kind_of(double value) {
     return std::isnan(value) ? 0 : value > 0 ? 1 : 2;
 }

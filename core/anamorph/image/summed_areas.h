@@ -24,15 +24,18 @@ class SummedAreas {
     /// Reads all of the source, twice. Throws std::bad_alloc, and Error where it cannot be read.
     explicit SummedAreas(const Source& source);
 
-    /// The mean over the rectangle of width x height texels about (x, y), in which texels are squares of one color, to
-    /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are
-    /// no number, are 1, so that the smallest rectangle interpolates bilinearly. Beyond the edges as `wrap`, where
-    /// automatic is black; where that is asked for, texels beyond the edges of the source's picture stand for themselves. A texel that is no number makes no number of its channel's means over it, and an infinite one
-    /// infinite ones, unless less than kSameTexel (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
+    /// Writes the mean over the rectangle of width x height texels about (x, y), in which texels are squares
+    /// of one color, to `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample
+    /// says. Sides below 1, or that are no number, are 1, so that the smallest rectangle interpolates
+    /// bilinearly. Beyond the edges as `wrap`, where automatic is black; where that is
+    /// asked for, texels beyond the edges of the source's picture stand for themselves. A texel that is no number makes no
+    /// number of its channel's means over it, and an infinite one infinite ones, unless less than kSameTexel
+    /// (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
     void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
 
-    /// The same of a picture in latitudes and longitudes, all around: left and right it repeats itself, and beyond its
-    /// upper and lower edges, the poles, it goes on half a turn farther. Sides above those of the picture are those.
+    /// Writes the mean over a rectangle of a picture in latitudes and longitudes, all around: left and right
+    /// it repeats itself, and beyond its upper and lower edges, the poles, it goes on half a turn farther.
+    /// Sides above those of the picture count as these.
     void mean_over_poles(double x, double y, double width, double height, float* pixel) const noexcept;
 
   private:
@@ -51,11 +54,11 @@ class SummedAreas {
     void mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept;
 
     Size m_size;
-    Box m_extent;                       ///< of the table
-    std::vector<double> m_units;        ///< channel by channel: of the sums
-    std::vector<double> m_scales;       ///< and of the channel's values
+    Box m_extent;                       ///< the texels that the table has
+    std::vector<double> m_units;        ///< units of the sums, channel by channel
+    std::vector<double> m_scales;       ///< units of the values, channel by channel
     std::vector<std::uint64_t> m_sums;  ///< modulo 2^64
-    /// How many texels are no numbers, +infinite and -infinite; each empty where none is.
+    /// Counts of texels that are no numbers, +infinite and -infinite; each empty where none is.
     std::array<std::vector<std::uint64_t>, 3> m_special;
 };
 

@@ -7,14 +7,16 @@
 
 namespace anamorph {
 
-/// For such a channel a point that is nearer to the middle of a texel than this, either way, is there: the texels beside it
-/// have no weight. So much a block of 64 source pixels loses of its points, offsets of up to 32 from its base, in float: each
-/// of some ten roundings by 2^-24 of 32 at most (term_rounding, plan/block_writer.h). An identity is off by less.
+/// The distance from the middle of a texel, either way, below which a point counts as there for a channel
+/// that comes out infinite or as no number: the texels beside it have no weight. So much a block of 64 source
+/// pixels loses of its points, offsets of up to 32 from its base, in float: each of some ten roundings by
+/// 2^-24 of 32 at most (term_rounding, plan/block_writer.h). An identity is off by less.
 inline constexpr float kSameTexel = 0x1p-15f;
 
-/// And several taps that lie within this of their middle, each way, are one there. A step of one texel that is off by as much as
-/// two points, 2^-14, asks for less energy of noise by a third of that (footprint.h), which two taps d apart have where d^2 / 2
-/// is as much: each is d / 2 < 2^-8 from the middle.
+/// The distance from their middle, each way, within which several taps count as one for such a channel. A
+/// step of one texel that is off by as much as two points, 2^-14, asks for less energy of noise by a third of
+/// that (footprint.h), which two taps d apart have where d^2 / 2 is as much: each is d / 2 < 2^-8 from the
+/// middle.
 inline constexpr float kSameTap = 0x1p-8f;
 
 }  // namespace anamorph

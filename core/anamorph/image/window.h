@@ -10,8 +10,8 @@
 
 namespace anamorph {
 
-/// `texels` points at texel (box.x0, box.y0): packed pixels of `type`. At least kSlack bytes behind the last
-/// texel of every row may be read (they hold anything).
+/// A rectangle of texels in memory. `texels` points at texel (box.x0, box.y0): packed pixels of `type`. At
+/// least kSlack bytes behind the last texel of every row may be read (they hold anything).
 struct Window {
     static constexpr std::ptrdiff_t kSlack = 64;
 
@@ -27,16 +27,16 @@ class WindowReader {
   public:
     WindowReader(const Source& source, const Border& border) : m_source(source), m_border(border) {}
 
-    /// The texels of `box` on `piece` of `level`; the box may reach over every edge. Points into the source
-    /// when the box lies inside a level in memory, or wholly beyond a seam of it, where the same texels follow
-    /// each other (packed, not to be multiplied by alpha), else into memory of its own. With unassociated
-    /// alpha the window is float with colour multiplied by alpha. False when the source could not be read or
-    /// the box has more than kMaxTexels texels.
+    /// Gets the texels of `box` on `piece` of `level`; the box may reach over every edge. Points into the
+    /// source when the box lies inside a level in memory, or wholly beyond a seam of it, where the same
+    /// texels follow each other (packed, not to be multiplied by alpha), else into memory of its own. With
+    /// unassociated alpha the window is float with colour multiplied by alpha. False when the source could
+    /// not be read or the box has more than kMaxTexels texels.
     bool get(int level, int piece, const Box& box, Window& window) noexcept;
 
-    /// The same where it points into the source, and false elsewhere: nothing is copied.
+    /// Gets a window where it points into the source, and is false elsewhere: nothing is copied.
     bool get_in_place(int level, int piece, const Box& box, Window& window) noexcept;
-    /// The same, with rows one behind the other in memory of its own.
+    /// Gets a window with rows one behind the other in memory of its own.
     bool get_copy(int level, int piece, const Box& box, Window& window) noexcept;
 
     /// Does no rectangle of the level hold these texels in the same order, so that they have to be put together?

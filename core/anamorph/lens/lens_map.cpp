@@ -31,7 +31,8 @@ double largest_magnitude(const Of& of, double slack) {
     return bound;
 }
 
-/// As many pixels more or fewer on both sides as hold what lies up to `half` pixels from the middle.
+/// The side with as many pixels more or fewer at both ends as hold what lies up to `half` pixels from the
+/// middle.
 int widened(int side, double half) {
     // A hair that rounding adds is no pixel.
     const double more = std::ceil(half - 0.5 * side - 1e-6);

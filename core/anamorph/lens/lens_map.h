@@ -33,7 +33,7 @@ class LensMap : public PlaneMap<LensMap> {
         const auto scale = m_scale.as<T>();
         return {p.x * scale + 0.5 * source_size().width, p.y * scale + 0.5 * source_size().height};
     }
-    /// Positive before the lens ends.
+    /// A number that is positive before the lens ends.
     template <class T>
     T inside(const T& x, const T& y) const {
         return m_mode == LensMode::undistort ? lens().sees(about_axis(in_plane(x, y)))
@@ -53,14 +53,15 @@ class LensMap : public PlaneMap<LensMap> {
                 (y - 0.5 * target_size().height) * m_per_y.as<T>()};
     }
 
-    /// A point of the ideal picture about the axis of sight, which meets it in the lens's centre, as the lens reads it.
+    /// Moves a point of the ideal picture so that it is about the axis of sight, which meets it in the lens's
+    /// centre, as the lens reads it.
     template <class T>
     Point<T> about_axis(const Point<T>& p) const {
         const LensTerms& terms = lens().terms();
         if (!terms.shifted) return p;
         return {p.x - terms.shift_x.as<T>(), p.y - terms.shift_y.as<T>()};
     }
-    /// And back.
+    /// Moves a point of the ideal picture back from the axis of sight to the picture's middle.
     template <class T>
     Point<T> about_middle(const Point<T>& p) const {
         const LensTerms& terms = lens().terms();

@@ -10,7 +10,7 @@
 namespace anamorph::machine {
 namespace {
 
-// Of the output image memory.
+// The most pixels of the output image memory.
 constexpr int kMostPixels = 1 << 28;
 
 /// Pixels whose centres lie in [low, high], of a row of `count`.

@@ -32,35 +32,36 @@ inline constexpr NumberRow kFractionBitsRow{"fraction_bits", 12, 0, 30, NumberRo
 inline constexpr NumberRow kOkaBlockRow{"block", 8, 0.25, 4096};
 inline constexpr NumberRow kOkaOverlapRow{"overlap", 0.5, 0, 16};
 
-/// What the machine is made of. By default a picture of 512 x 512 in blocks of 8 x 8 takes less than 33 ms a frame.
+/// The parts and numbers of the machine. By default a picture of 512 x 512 in blocks of 8 x 8 takes less than
+/// 33 ms a frame.
 struct BlockMachine {
     double clock_mhz = kClockRow.standard;
     int processors = static_cast<int>(kProcessorsRow.standard);
-    int multipliers = static_cast<int>(kMultipliersRow.standard);  ///< of each processor
+    int multipliers = static_cast<int>(kMultipliersRow.standard);  ///< in each processor
     int division_cycles = static_cast<int>(kDivisionRow.standard);
     int surface_multiplies = static_cast<int>(kSurfaceRow.standard);  ///< products for a point of the surface
-    int host_cycles = static_cast<int>(kHostRow.standard);            ///< a frame
-    int block_cycles = static_cast<int>(kSetupRow.standard);          ///< the address controller's, a block
+    int host_cycles = static_cast<int>(kHostRow.standard);            ///< cycles of the host, a frame
+    int block_cycles = static_cast<int>(kSetupRow.standard);          ///< cycles of the controller, a block
     int segment_cycles = static_cast<int>(kSegmentCyclesRow.standard);
     int segment = static_cast<int>(kSegmentRow.standard);  ///< side of a segment of the screen, pixels
     int pixel_units =
         static_cast<int>(kPixelUnitsRow.standard);  ///< pixels that the pixel processor makes in a cycle
     int address_bits =
-        static_cast<int>(kAddressBitsRow.standard);  ///< of an address, in texels, two's complement
-    int fraction_bits = static_cast<int>(kFractionBitsRow.standard);          ///< of these, behind the point
-    double block = kOkaBlockRow.standard, overlap = kOkaOverlapRow.standard;  ///< OkaBlocks
+        static_cast<int>(kAddressBitsRow.standard);  ///< bits of an address, in texels, two's complement
+    int fraction_bits = static_cast<int>(kFractionBitsRow.standard);  ///< of these, those behind the point
+    double block = kOkaBlockRow.standard, overlap = kOkaOverlapRow.standard;  ///< as in OkaBlocks
 };
 
-/// What a frame visits.
+/// The numbers of what a frame visits.
 struct BlockCounts {
-    std::int64_t blocks = 0;  ///< for which the processors make a map
+    std::int64_t blocks = 0;  ///< blocks that the processors make a map for
     std::int64_t segments = 0;
-    std::int64_t pixels = 0;     ///< again for every block that is drawn over the ones before
+    std::int64_t pixels = 0;     ///< visited pixels, again for every block that is drawn over the ones before
     std::int64_t saturated = 0;  ///< pixels of the screen whose address, the last one, was beyond the range
 };
 
-/// A frame as the machine draws it: for each pixel of the screen, row by row, which block was drawn last, and its address
-/// there, in texels.
+/// A frame as the machine draws it: for each pixel of the screen, row by row, the block that was drawn last,
+/// and its address there, in texels.
 struct BlockFrame {
     static constexpr std::int32_t kNone = -1;
 
@@ -69,7 +70,7 @@ struct BlockFrame {
     std::vector<std::int32_t> block;  ///< kNone where none was drawn
     std::vector<Point<double>> addresses;
     std::vector<bool> beyond;     ///< the address was beyond the range, and saturated
-    std::vector<Jacobian> steps;  ///< of the blocks, before they were rounded
+    std::vector<Jacobian> steps;  ///< derivatives of the blocks' maps, before they were rounded
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the machine of 1987 draws, as a pull map.
+// The drawing of the machine of 1987 as a pull map.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace anamorph::machine {
 
-/// Source points are the machine's addresses, in pixels of the picture. Pixels of the screen where nothing is seen have none.
-/// A block's bound is the largest distance on the screen, in pixels, of what its pixels show from where it belongs: each is
-/// measured, in double.
+/// A map whose source points are the machine's addresses, in pixels of the picture. Pixels of the screen
+/// where nothing is seen have none. A block's bound is the largest distance on the screen, in pixels, of what
+/// its pixels show from where it belongs: each is measured, in double.
 class BlockMachineMap final : public BlockMap {
   public:
     /// Throws Error where there are more than four million blocks.
@@ -19,7 +19,7 @@ class BlockMachineMap final : public BlockMap {
                     const surface::Camera& camera, const Size& picture);
 
     const BlockFrame& frame() const { return m_frame; }
-    /// Of a pixel, 0 where nothing is seen.
+    /// The distance on the screen of what a pixel shows from where it belongs, 0 where nothing is seen.
     double landing_error(int x, int y) const;
 
     bool exact(double x, double y, int piece, Point<double>& source_point,

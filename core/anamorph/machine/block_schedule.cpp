@@ -33,7 +33,7 @@ std::vector<MachineStage> stages_of(const BlockMachine& machine, const BlockCoun
         {"output", scanned, image, 0, "", 0}};
 }
 
-/// Of the two that draw, each frame.
+/// The cycles of the two stages that draw, each frame.
 double drawing_cycles(const std::vector<MachineStage>& stages) {
     return std::max(stages[MachineSchedule::controller].cycles, stages[MachineSchedule::pixels].cycles);
 }
@@ -92,7 +92,7 @@ class FrameRun {
     MachineSchedule& m_schedule;
 };
 
-/// With so many digits behind the point, whatever the locale.
+/// A number with so many digits behind the point, whatever the locale.
 std::string rounded(double value, int digits) {
     char text[64];
     return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the machine of Oka 1987 takes for what it visits (block_machine.h). Between its parts stand double buffers: while
-// one half is filled, the other is read. So the host computer, the micro-coded processors, the drawing parts and the output
-// each work on another frame; the address controller and the pixel processor, which draw, on the same one, and between
-// these two stands a queue of addresses.
+// The time that the machine of Oka 1987 takes for what it visits (block_machine.h). Between its parts stand
+// double buffers: while one half is filled, the other is read. So the host computer, the micro-coded
+// processors, the drawing parts and the output each work on another frame; the address controller and the
+// pixel processor, which draw, on the same one, and between these two stands a queue of addresses.
 #pragma once
 
 #include <string>
@@ -12,30 +12,31 @@
 
 namespace anamorph::machine {
 
-/// A part of the machine and what it does in a frame, once the buffers have filled. What it works and waits is together the
-/// time of a frame.
+/// A part of the machine and what it does in a frame, once the buffers have filled. The cycles that it works
+/// and waits are together the time of a frame.
 struct MachineStage {
     std::string name;
-    double cycles;                     ///< that it works
-    double bytes_read, bytes_written;  ///< of memories for blocks and images
-    std::string buffer;                ///< that it fills; may be none
-    double buffer_bytes;               ///< of both halves of that
+    double cycles;                     ///< cycles that it works
+    double bytes_read, bytes_written;  ///< bytes of memories for blocks and images
+    std::string buffer;                ///< the buffer that it fills; may be none
+    double buffer_bytes;               ///< bytes of both halves of that buffer
     double starved = 0;                ///< cycles that it waits for what it reads
     double blocked = 0;                ///< cycles that it waits for room for what it writes
 };
 
 /// A frame at a stage, in cycles since the machine was started.
 struct MachineVisit {
-    double ready;       ///< the stage is done with the frame before
-    double fed;         ///< what it reads is there
-    double begin, end;  ///< there is room, and it works; of the two that draw, until both are done
+    double ready;       ///< when the stage is done with the frame before
+    double fed;         ///< when what it reads is there
+    double begin, end;  ///< when there is room, and it works; of the two that draw, until both are done
 };
 
-/// How long frames take. Stages work at once, so that the slowest one sets the rate.
+/// The times that frames take. Stages work at once, so that the slowest one sets the rate.
 struct MachineSchedule {
-    /// In the order in which a frame passes them: the host, the processors, the two that draw, the output.
+    /// The stages in the order in which a frame passes them: the host, the processors, the two that draw, the
+    /// output.
     enum Place : std::size_t { host, processors, controller, pixels, output, kStages };
-    /// So many are followed from the start.
+    /// The number of frames that are followed from the start.
     static constexpr std::size_t kFrames = 12;
 
     BlockCounts counts;
@@ -55,9 +56,10 @@ inline constexpr double kBytesOfPixel = 3, kBytesOfBlock = 24;
 
 MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const Size& screen);
 
-/// A line for each stage: stage,cycles,ms,utilisation,starved_ms,blocked_ms,bytes_read,bytes_written,buffer_bytes.
+/// A table with a line for each stage:
+/// stage,cycles,ms,utilisation,starved_ms,blocked_ms,bytes_read,bytes_written,buffer_bytes.
 std::string schedule_csv(const MachineSchedule& schedule);
-/// The first frames on their way through the stages and the buffers between them, over time.
+/// A diagram of the first frames on their way through the stages and the buffers between them, over time.
 std::string schedule_svg(const MachineSchedule& schedule);
 
 }  // namespace anamorph::machine

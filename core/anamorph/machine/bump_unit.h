@@ -22,22 +22,22 @@ inline constexpr NumberRow kBumpWeightRow{"weight_bits", 8, 0, 23, NumberRow::cl
 inline constexpr NumberRow kBumpAddressRow{"address_bits", 8, 0, 23, NumberRow::closed, true};
 inline constexpr NumberRow kTextureSideRow{"texture_side", 4096, 1, 1 << 20, NumberRow::closed, true};
 
-/// What a bump unit is made of.
+/// The parts and numbers of a bump unit.
 struct BumpUnit {
-    /// clamp: the texels cover the picture, and what lies beyond the centres of the outer ones is like these; border: the
-    /// outermost texels lie outside of the picture.
+    /// The edge of a bump map. clamp: the texels cover the picture, and what lies beyond the centres of the
+    /// outer ones is like these; border: the outermost texels lie outside of the picture.
     enum class Edge { clamp, border };
 
     int size =
         static_cast<int>(kBumpSizeRow.standard);  ///< texels of the bump map each way; 0: there is none
     NumberFormat texel = kSigned16;
     bool scaled = true;  ///< texels are divided by the largest, so that they use all of their range (4.4.3)
-    int weight_bits = static_cast<int>(kBumpWeightRow.standard);  ///< of bilinear weights of the bump map
+    int weight_bits = static_cast<int>(kBumpWeightRow.standard);  ///< bits of the bump map's bilinear weights
     Edge edge = Edge::clamp;
     NumberFormat arithmetic =
-        kFloat32;  ///< of texture coordinates and all that is done with them (with_format)
-    int address_bits = static_cast<int>(kBumpAddressRow.standard);  ///< MachineMap
-    int texture_side = static_cast<int>(kTextureSideRow.standard);  ///< larger sources do not fit
+        kFloat32;  ///< format of texture coordinates and all that is done with them (with_format)
+    int address_bits = static_cast<int>(kBumpAddressRow.standard);  ///< as in MachineMap
+    int texture_side = static_cast<int>(kTextureSideRow.standard);  ///< side of the largest source that fits
 };
 
 /// A bump unit set up for one piece of a picture.
@@ -45,9 +45,9 @@ class BumpStage {
   public:
     BumpStage(const Panorama& map, int piece, const BumpUnit& unit);
 
-    /// At a screen coordinate.
+    /// The coordinates at a screen coordinate.
     UnitCoordinates operator()(double s, double t) const;
-    /// Texels of the bump map beyond the range of their format.
+    /// The number of texels of the bump map that are beyond the range of their format.
     int saturated_texels() const { return m_saturated; }
 
   private:
@@ -58,14 +58,14 @@ class BumpStage {
     BumpUnit m_unit;
     /// The linear part in texture coordinates, by 2 s - 1 and 2 t - 1.
     LinearPart m_linear;
-    /// Position in the bump map = s * m_span + m_first.
+    /// Numbers of the position in the bump map, which is s * m_span + m_first.
     double m_span = 0, m_first = 0;
-    std::array<double, 2> m_scale{1, 1};  ///< what texels are multiplied with
+    std::array<double, 2> m_scale{1, 1};  ///< factors of texels
     std::unique_ptr<const MachineTexture<2>> m_bumps;
     int m_saturated = 0;
 };
 
-/// What reading the coordinates back shows (section 4.6): a texture of size x size texels that hold their own texture
+/// The reading back of coordinates (section 4.6): a texture of size x size texels that hold their own texture
 /// coordinates is drawn in place of the source, to a picture of the same format.
 class ReadBack {
   public:
@@ -83,7 +83,7 @@ class BumpedPanorama final : public MachineMap {
     /// Throws Error naming `machine` where the source has several pieces or is larger than the unit's textures.
     BumpedPanorama(const Panorama& map, const BumpUnit& unit);
 
-    /// Texels of its bump maps that were beyond their format's range.
+    /// The number of texels of its bump maps that were beyond their format's range.
     int saturated_texels() const;
 
   protected:

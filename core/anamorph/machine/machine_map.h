@@ -17,8 +17,8 @@ namespace anamorph::machine {
 /// Texture coordinates as a unit computed them: from 0 to 1 over the source image, u right, v down.
 struct UnitCoordinates {
     Point<double> at;
-    bool beyond;       ///< a number was beyond the range of its format
-    bool seen = true;  ///< the pixel is drawn
+    bool beyond;       ///< was a number beyond the range of its format?
+    bool seen = true;  ///< is the pixel drawn?
 };
 
 /// Blocks whose source points are a machine's. A block's bound is the largest distance of its pixels' source points from the
@@ -30,7 +30,7 @@ class MachineMap : public BlockMap {
     MachineMap(std::shared_ptr<const BlockMap> exact, const std::vector<Box>& pieces, const Size& source,
                double turn, int address_bits);
 
-    /// How many of the picture's pixels have coordinates that were beyond the range of a format.
+    /// The number of the picture's pixels whose coordinates were beyond the range of a format.
     std::int64_t saturated_pixels(const ParallelFor& parallel_for) const;
 
     bool exact(double x, double y, int piece, Point<double>& source_point,
@@ -41,14 +41,14 @@ class MachineMap : public BlockMap {
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
 
   protected:
-    /// Of the pixel whose left upper corner is (x, y).
+    /// The coordinates of the pixel whose left upper corner is (x, y).
     virtual UnitCoordinates coordinates(int x, int y, int piece) const = 0;
-    /// How far exact() may be from the truth on a box, in source pixels.
+    /// The largest distance of exact() from the truth on a box, in source pixels.
     virtual double rounding(const Box& box, int piece) const = 0;
 
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
-    /// Where the source is read, in its pixels.
+    /// The point where the source is read, in its pixels.
     Point<double> source_point(const UnitCoordinates& coordinates) const;
 
   private:
@@ -62,7 +62,7 @@ class MachineMap : public BlockMap {
     Size m_source;
     double m_turn, m_address_unit;
     mutable std::mutex m_mutex;
-    mutable std::map<std::array<int, 3>, std::int64_t> m_saturated;  ///< of regions, by piece and corner
+    mutable std::map<std::array<int, 3>, std::int64_t> m_saturated;  ///< in regions, by piece and corner
 };
 
 /// Throws Error naming `machine` where a source is larger than textures of side x side.

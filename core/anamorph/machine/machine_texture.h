@@ -9,7 +9,7 @@
 
 namespace anamorph::machine {
 
-/// Texels of N numbers.
+/// A texture of size x size texels of N numbers.
 template <std::size_t N>
 class MachineTexture {
   public:
@@ -21,8 +21,8 @@ class MachineTexture {
 
     int size() const { return m_size; }
 
-    /// At a position in texels, centres at + 0.5; beyond the centres of the outer texels as there, where it is NaN as at 0.
-    /// Interpolated with numbers T, along rows first.
+    /// Reads the texture at a position in texels, centres at + 0.5; beyond the centres of the outer texels as
+    /// there, where it is NaN as at 0. Interpolated with numbers T, along rows first.
     template <class T>
     std::array<T, N> read(double x, double y) const {
         const Place column = place(x), row = place(y);

@@ -32,10 +32,10 @@ inline constexpr NumberFormat kFloat16{NumberFormat::Kind::floating, 5, 10, fals
 /// The format of pixel shaders of 2003: 1, 7 and 16 bits.
 inline constexpr NumberFormat kFloat24{NumberFormat::Kind::floating, 7, 16};
 inline constexpr NumberFormat kFloat32{NumberFormat::Kind::floating, 8, 23, false, true};
-/// -8 to 8 in steps of 2^-12: pixel shaders before floats.
+/// The format of pixel shaders before floats: -8 to 8 in steps of 2^-12.
 inline constexpr NumberFormat kFixed16{NumberFormat::Kind::fixed, 16, 12};
 inline constexpr NumberFormat kFixed32{NumberFormat::Kind::fixed, 32, 16};
-/// A component of D3DFMT_V8U8, V16U16 and G16R16: -1 to 1 - 2^-7, -1 to 1 - 2^-15, and 0 to 1.
+/// The formats of a component of D3DFMT_V8U8, V16U16 and G16R16: -1 to 1 - 2^-7, -1 to 1 - 2^-15, and 0 to 1.
 inline constexpr NumberFormat kSigned8{NumberFormat::Kind::fixed, 8, 7};
 inline constexpr NumberFormat kSigned16{NumberFormat::Kind::fixed, 16, 15};
 inline constexpr NumberFormat kUnsigned16{NumberFormat::Kind::normalised, 16};
@@ -44,7 +44,7 @@ inline constexpr NumberFormat kUnsigned16{NumberFormat::Kind::normalised, 16};
 /// Throws Error naming `parameter` and what is allowed.
 NumberFormat number_format_from_name(std::string_view name, const std::string& parameter,
                                      std::initializer_list<NumberFormat> allowed = {});
-/// One of those names.
+/// The name of a format, one of those that number_format_from_name() reads.
 std::string name_of(const NumberFormat& format);
 
 /// The largest number of the format.
@@ -52,11 +52,11 @@ double largest(const NumberFormat& format);
 
 namespace format_detail {
 
-/// Units of what lies beyond the range of a fixed format.
+/// The units that a fixed format gives what lies beyond its range.
 double beyond_fixed(const NumberFormat& format, double units, bool& beyond);
 double nearest_normalised(const NumberFormat& format, double value, bool& beyond);
 
-/// 2^exponent, from 2^-1022 to 2^1023.
+/// The power 2^exponent, from 2^-1022 to 2^1023.
 constexpr double power_of_2(int exponent) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
@@ -67,7 +67,8 @@ inline double nearest_integer(double value) {
     return value + kShift - kShift;
 }
 
-// Inlined so that a format known to the compiler costs nothing (nearest_of).
+// Rounds to a floating format. It is inlined so that a format known to the compiler costs nothing
+// (nearest_of).
 [[gnu::always_inline]] inline double nearest_float(const NumberFormat& format, double value, bool& beyond) {
     constexpr int kDoubleFraction = 52;
     const int bias = (1 << (format.bits - 1)) - 1, least = 1 - bias;
@@ -127,7 +128,7 @@ inline double nearest(const NumberFormat& format, double value) {
     return nearest(format, value, beyond);
 }
 
-/// The same of a format that the compiler knows.
+/// The nearest number of a format that the compiler knows, as nearest() finds it.
 template <NumberFormat kFormat>
 double nearest_of(double value, bool& beyond) {
     return nearest(kFormat, value, beyond);
@@ -148,7 +149,7 @@ struct FormatNumber {
     FormatNumber(double exact)
         : value(nearest_of<kFormat>(exact, beyond)) {}  // NOLINT: a number is one, rounded
 
-    /// Of an exact result of `operands`.
+    /// Makes a number of an exact result of `operands`.
     template <class... Operands>
     static FormatNumber made_of(double exact, const Operands&... operands) {
         FormatNumber made(exact);
@@ -192,8 +193,8 @@ struct FormatNumber {
     friend double enlarger(FormatNumber, FormatNumber) { return 1; }
 };
 
-/// body(FormatNumber<format>()) of a format in which hardware computes: float16, float24, fixed16, fixed32, and float32 in
-/// place of all others.
+/// Calls body(FormatNumber<format>()) for a format in which hardware computes: float16, float24, fixed16,
+/// fixed32, and float32 in place of all others.
 template <class Body>
 decltype(auto) with_format(const NumberFormat& format, const Body& body) {
     if (format == kFloat16) return body(FormatNumber<kFloat16>());

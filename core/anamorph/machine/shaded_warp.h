@@ -22,26 +22,27 @@ inline constexpr NumberRow kTableWeightRow{"weight_bits", 8, 0, 23, NumberRow::c
 inline constexpr NumberRow kShaderAddressRow{"address_bits", 8, 0, 23, NumberRow::closed, true};
 inline constexpr NumberRow kShaderTextureRow{"texture_side", 2048, 1, 1 << 20, NumberRow::closed, true};
 
-/// What a pixel-shader unit is made of.
+/// The parts and numbers of a pixel-shader unit.
 struct ShaderUnit {
-    NumberFormat arithmetic = kFloat24;  ///< of registers and all that is computed (with_format)
-    NumberFormat texel = kFloat32;       ///< of the products' textures
-    int table_size = static_cast<int>(kTableSizeRow.standard);        ///< of these, texels each way
-    int weight_bits = static_cast<int>(kTableWeightRow.standard);     ///< of their bilinear weights
-    int address_bits = static_cast<int>(kShaderAddressRow.standard);  ///< MachineMap
-    int texture_side = static_cast<int>(kShaderTextureRow.standard);  ///< larger sources do not fit
+    NumberFormat arithmetic = kFloat24;  ///< format of registers and all that is computed (with_format)
+    NumberFormat texel = kFloat32;       ///< format of the products' textures
+    int table_size = static_cast<int>(kTableSizeRow.standard);        ///< texels of these textures each way
+    int weight_bits = static_cast<int>(kTableWeightRow.standard);     ///< bits of their bilinear weights
+    int address_bits = static_cast<int>(kShaderAddressRow.standard);  ///< as in MachineMap
+    int texture_side = static_cast<int>(kShaderTextureRow.standard);  ///< the largest side of a source
 };
 
-/// What a program of a warp finds, at a pixel's centre: t0 = (u, v, 0, 1), the linear texture coordinates; t1 = (s, t, 0, 1),
-/// where in the tables of products the cell's s and t are; s0, the picture; s1 to s4, the products; c0 to c3 and c4 to c7,
-/// their factors for u and for v (eq. 5.5 and 5.7); c8 and c9 = (width, height, 1 / width, 1 / height) of the source and of
-/// the picture that is drawn. All other constants are 0 or the program's own, which go before these.
+/// The slots of a program of a warp, with what it finds there at a pixel's centre: t0 = (u, v, 0, 1), the
+/// linear texture coordinates; t1 = (s, t, 0, 1), where in the tables of products the cell's s and t are; s0,
+/// the picture; s1 to s4, the products; c0 to c3 and c4 to c7, their factors for u and for v (eq. 5.5 and
+/// 5.7); c8 and c9 = (width, height, 1 / width, 1 / height) of the source and of the picture that is drawn.
+/// All other constants are 0 or the program's own, which go before these.
 inline constexpr ShaderSlots kWarpSlots{5, 2, 0};
 
 /// Does a program of a warp read the picture once? Only then is it a map, to where it does; pixels that it kills have no point.
 bool reads_picture_once(const ShaderProgram& program);
 
-/// Our program. The picture is read last.
+/// Our program of a warp. It reads the picture last.
 extern const char* const kHermiteShader;
 
 /// A mesh warp as a pixel-shader unit draws it.
@@ -49,14 +50,16 @@ class ShadedWarp final : public MachineMap {
   public:
     /// Throws Error naming `machine` where the source is larger than the unit's textures.
     ShadedWarp(const Mesh& mesh, const ShaderUnit& unit);
-    /// The same by another program, which was assembled for kWarpSlots.
+    /// Draws by the given program, which was assembled for kWarpSlots, in place of ours. Throws as the other
+    /// does.
     ShadedWarp(const Mesh& mesh, const ShaderUnit& unit, ShaderProgram program);
 
     /// The exact map.
     const MeshPlan& exact_plan() const { return *m_plan; }
-    /// The picture's four components at a point of the source, in its pixels.
+    /// A function that gives the picture's four components at a point of the source, in its pixels.
     using ReadPicture = std::function<std::array<double, 4>(const Point<double>& at)>;
-    /// What the program makes of the pixel whose left upper corner is (x, y): oC0; of one that it kills 0.
+    /// The colour oC0 that the program gives the pixel whose left upper corner is (x, y); 0 where it kills
+    /// it.
     std::array<double, 4> color(int x, int y, const ReadPicture& read) const;
 
   protected:
@@ -67,7 +70,7 @@ class ShadedWarp final : public MachineMap {
     ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit, ShaderProgram program);
     template <class T>
     ShaderInputs<T> inputs(double x, double y) const;
-    /// What a program leaves of a pixel.
+    /// The result of a program for a pixel.
     template <class T>
     struct Drawn {
         ShaderVector<T> color;
@@ -79,7 +82,7 @@ class ShadedWarp final : public MachineMap {
     std::shared_ptr<const MeshPlan> m_plan;
     ShaderUnit m_unit;
     ShaderProgram m_program;
-    std::vector<MachineTexture<4>> m_products;  ///< s1 to s4
+    std::vector<MachineTexture<4>> m_products;  ///< the textures s1 to s4
 };
 
 }  // namespace anamorph::machine

@@ -61,7 +61,7 @@ enum class ShaderOpcode : std::uint8_t {
     cmp
 };
 
-/// Does it read a texture, whose number is that of its second source?
+/// Does an instruction read a texture, whose number is that of its second source?
 constexpr bool samples(ShaderOpcode opcode) {
     return opcode == ShaderOpcode::texld || opcode == ShaderOpcode::texldp || opcode == ShaderOpcode::texldb;
 }
@@ -73,13 +73,13 @@ struct ShaderSource {
     ShaderBank bank = ShaderBank::temporary;
     int number = 0;
     bool negated = false;
-    std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};  ///< where each component is taken from
+    std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};  ///< the component that each is taken from
 };
 
 struct ShaderInstruction {
     ShaderOpcode opcode = ShaderOpcode::mov;
     bool saturated = false, partial = false;  ///< _sat, _pp
-    ShaderBank bank = ShaderBank::temporary;  ///< of the destination
+    ShaderBank bank = ShaderBank::temporary;  ///< bank of the destination
     int number = 0;
     std::uint8_t mask = 15;  ///< bit i: component i is written; 0 of texkill and nop
     std::array<ShaderSource, 3> sources{};
@@ -90,7 +90,8 @@ struct ShaderConstant {
     std::array<double, 4> value;
 };
 
-/// What a text was assembled to. Every component that an instruction reads has been written, declared or is a constant.
+/// An assembled program. Every component that an instruction reads has been written, declared or is a
+/// constant.
 struct ShaderProgram {
     static constexpr int kMostArithmetic = 64, kMostTexture = 32, kMostOrder = 3;
     static constexpr int kTemporaries = 12, kConstants = 32, kCoordinates = 8, kColors = 2, kSamplers = 16,
@@ -98,20 +99,21 @@ struct ShaderProgram {
 
     std::vector<ShaderInstruction> instructions;
     std::vector<ShaderConstant> constants;
-    std::uint32_t samplers = 0;  ///< bit i: number i is declared
+    std::uint32_t samplers = 0;  ///< bit i: sampler i is declared
     /// Bit i: component i is declared.
     std::array<std::uint8_t, kCoordinates> coordinates{};
     std::array<std::uint8_t, kColors> colors{};
-    int arithmetic = 0, texture = 0;  ///< slots of either kind
+    int arithmetic = 0, texture = 0;  ///< number of slots of either kind
 };
 
-/// How many textures, coordinates and colors whoever runs a program gives it.
+/// The numbers of textures, coordinates and colors that whoever runs a program gives it.
 struct ShaderSlots {
     int samplers = ShaderProgram::kSamplers, coordinates = ShaderProgram::kCoordinates,
         colors = ShaderProgram::kColors;
 };
 
-/// Throws Error "name: line 3: what is wrong", also where others than those of `slots` are declared.
+/// Assembles a text. Throws Error "name: line 3: what is wrong", also where others than those of `slots` are
+/// declared.
 ShaderProgram assemble_shader(std::string_view text, const std::string& name, const ShaderSlots& slots = {});
 
 /// A program as text again, which assembles to the same.

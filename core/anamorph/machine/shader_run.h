@@ -11,10 +11,10 @@ namespace anamorph::machine {
 template <class T>
 using ShaderVector = std::array<T, 4>;
 
-/// What a program is given beside textures.
+/// The inputs of a program beside textures.
 template <class T>
 struct ShaderInputs {
-    /// The program's own constants are set; all else is 0.
+    /// Sets the program's own constants; all else is 0.
     explicit ShaderInputs(const ShaderProgram& program) {
         for (const ShaderConstant& c : program.constants) {
             const auto n = static_cast<std::size_t>(c.number);
@@ -34,7 +34,7 @@ struct ShaderInputs {
     std::array<ShaderVector<T>, ShaderProgram::kColors> colors{};
 
   private:
-    std::uint32_t m_defined = 0;  ///< bit n: constant n
+    std::uint32_t m_defined = 0;  ///< bit n: constant n is the program's own
 };
 
 template <class T>
@@ -84,7 +84,7 @@ class ShaderMachine {
         return vector;
     }
 
-    /// All components, of which the mask takes some.
+    /// Computes all components of an instruction's result, of which the mask takes some.
     Vector computed(const ShaderInstruction& i) const {
         const Vector a = read(i.sources[0]), b = read(i.sources[1]), c = read(i.sources[2]);
         if (i.opcode == ShaderOpcode::nrm) return normalized(a);
@@ -103,8 +103,9 @@ class ShaderMachine {
     static Vector cross(const Vector& a, const Vector& b) {
         return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], T(0.0)};
     }
-    /// By series of sin and cos of half the angle (Taylor, up to the 7th and the 6th power), in the eight slots that the
-    /// profile allows: z = a^2; three steps of both series; sin; sin^2 and sin cos; cos a and sin a. Within 0.002.
+    /// cos a and sin a by series of sin and cos of half the angle (Taylor, up to the 7th and the 6th power),
+    /// in the eight slots that the profile allows: z = a^2; three steps of both series; sin; sin^2 and
+    /// sin cos; cos a and sin a. Within 0.002.
     static Vector cos_sin(const T& a, const Vector& c1, const Vector& c2) {
         const T z = a * a, sine = (((z * c1[0] + c1[3]) * z + c2[0]) * z + c2[3]) * a,
                 cosine = ((z * c1[1] + c1[2]) * z + c2[1]) * z + c2[2], square = sine * sine,

@@ -6,11 +6,11 @@
 
 namespace anamorph::simd {
 
-/// c[0] + s (c[1] + s (c[2] + s c[3])).
+/// The cubic c[0] + s (c[1] + s (c[2] + s c[3])).
 struct CubicRow {
     double c[4];
 };
-/// Two of them on places [begin, end) of a row.
+/// Two cubics on places [begin, end) of a row.
 struct CubicRun {
     CubicRow x, y;
     int begin, end;

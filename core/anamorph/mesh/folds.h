@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many pixels of a box a map folds, found by bounds: most boxes have one sign of the Jacobian's
+// Counts the pixels of a box that a map folds, by bounds: most boxes have one sign of the Jacobian's
 // determinant throughout.
 #pragma once
 
@@ -39,8 +39,8 @@ inline int sign_of_determinant(const Bicubic& f, double rounding) {
     return middle > radius ? 1 : middle < -radius ? -1 : 0;
 }
 
-/// The folded pixels of a box. sign(box) is 1 where none certainly is folded, -1 where certainly all are, else 0;
-/// count(box) looks at the pixels of a small box one by one.
+/// Counts the folded pixels of a box. sign(box) is 1 where none certainly is folded, -1 where certainly all
+/// are, else 0; count(box) looks at the pixels of a small box one by one.
 template <class Sign, class Count>
 std::int64_t count_folded(const Box& box, const Sign& sign, const Count& count) {
     const auto certainty = [&](const Box& b) {

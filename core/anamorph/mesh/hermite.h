@@ -19,7 +19,7 @@ struct Bicubic {
     double x[4][4], y[4][4];
 };
 
-/// From Hermite data to powers of s and t: M G M^T (eq. 5.3).
+/// Leads from Hermite data to powers of s and t: M G M^T (eq. 5.3).
 inline Bicubic power_form(const Patch& patch) {
     const auto powers = [](const double* g, double* c) {
         c[0] = g[0];
@@ -99,8 +99,8 @@ inline double size_of(const Patch& patch) {
     return std::max(x, y);
 }
 
-/// What a computation's rounding to double adds to a map's own error, as a distance: `terms` roundings of a
-/// patch's elements, 16 of the identity's part.
+/// A map's own error and what a computation's rounding to double adds to it, as a distance: `terms` roundings
+/// of a patch's elements, 16 of the identity's part.
 inline double with_rounding(const Mesh& mesh, const Mesh::Rough& rough, const Bounds& box, double terms) {
     const double place = std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * mesh.scale().x,
                                   std::max(std::fabs(box.y0), std::fabs(box.y1)) * mesh.scale().y);
@@ -111,28 +111,30 @@ inline double rounding_of(const Mesh& mesh, const MeshCell& cell, const Patch& p
                          {patch.x0, patch.y0, patch.x1, patch.y1}, terms);
 }
 
-/// How far Mesh::at is from the map of the given numbers on a cell, in pixels of "to". With u = 2^-53: the
-/// parameters round 3 u, which moves a value by 3 u of at most 3/2 of each element, both ways; a basis
-/// function of parameters in [0, 1] is at most 1 and rounds 10 u at most (s^2 (2 s - 3) + 1: a subtraction of
-/// at most 3, two products, a sum); products and sums of the rows and of the whole 4 u each. So less than 9 +
-/// 20 + 8 + 2 u, once each, of the elements' magnitudes; and of the identity's part the scale, the product
-/// and the sum.
+/// The terms of the distance of Mesh::at from the map of the given numbers on a cell, in pixels of "to". With
+/// u = 2^-53: the parameters round 3 u, which moves a value by 3 u of at most 3/2 of each element, both ways;
+/// a basis function of parameters in [0, 1] is at most 1 and rounds 10 u at most (s^2 (2 s - 3) + 1: a
+/// subtraction of at most 3, two products, a sum); products and sums of the rows and of the whole 4 u each.
+/// So less than 9 + 20 + 8 + 2 u, once each, of the elements' magnitudes; and of the identity's part the
+/// scale, the product and the sum.
 inline constexpr double kExactTerms = 40;
 inline double exact_rounding(const Mesh& mesh, const MeshCell& cell, const Patch& patch) {
     return rounding_of(mesh, cell, patch, kExactTerms);
 }
-/// The same in all cells of a box, where there is one level.
+/// The largest distance of Mesh::at from the map of the given numbers in all cells of a box, where there is
+/// one level.
 inline double exact_rounding(const Mesh& mesh, const Bounds& box) {
     return with_rounding(mesh, mesh.rough(box.x0, box.y0, box.x1, box.y1), box, kExactTerms);
 }
 
-/// The same of the forms of this file. Powers: a coefficient along one parameter rounds 5 u of at most
-/// 3, 3, 2, 1 (or 2, 2, 1, 1) times the elements; the columns of M in eq. 5.2 sum to at most 6, so that all
-/// coefficients together are at most 36 times the elements' magnitudes, and both passes round 10 u of that.
-/// A restriction to a part of [0, 1] evaluates Taylor coefficients, whose magnitudes sum to no more than the
-/// coefficients' own: 8 u a pass; its middle and half, 3 u and 2 u, move a value by at most 3 of all
-/// coefficients, both ways: 30 u. Chebyshev's form and what is left of it: 10 u. In all 66 u of 36 times the
-/// elements, of which the identity's part needs the restriction's and Chebyshev's share.
+/// The largest distance of the forms of this file from the map of the given numbers on a cell. Powers: a
+/// coefficient along one parameter rounds 5 u of at most 3, 3, 2, 1 (or 2, 2, 1, 1) times the elements; the
+/// columns of M in eq. 5.2 sum to at most 6, so that all coefficients together are at most 36 times the
+/// elements' magnitudes, and both passes round 10 u of that. A restriction to a part of [0, 1] evaluates
+/// Taylor coefficients, whose magnitudes sum to no more than the coefficients' own: 8 u a pass; its middle
+/// and half, 3 u and 2 u, move a value by at most 3 of all coefficients, both ways: 30 u. Chebyshev's form
+/// and what is left of it: 10 u. In all 66 u of 36 times the elements, of which the identity's part needs the
+/// restriction's and Chebyshev's share.
 inline double double_rounding(const Mesh& mesh, const MeshCell& cell, const Patch& patch) {
     return rounding_of(mesh, cell, patch, 66 * 36);
 }
@@ -174,7 +176,7 @@ struct EconomizedBicubic {
     }
 };
 
-/// Sum of the magnitudes of the coefficients of a coordinate: a bound of it on [-1, 1]^2.
+/// The sum of the magnitudes of the coefficients of a coordinate: a bound of the coordinate on [-1, 1]^2.
 inline double sum_of_magnitudes(const double (&c)[4][4]) {
     double sum = 0;
     for (const auto& row : c)

@@ -112,9 +112,9 @@ class InversePlan::CellParts {
         return bend;
     }
 
-    /// Of N's slope. The rounding of all coefficients together is at most m_rounding; on a part of half sizes
-    /// h and k they are shifted and scaled, so that a slope has h (1 + h)^2 (1 + k)^3 times 3 of it and the
-    /// same the other way round, with h and k of at most 1/2.
+    /// The rounding of N's slope. That of all coefficients together is at most m_rounding; on a part of half
+    /// sizes h and k they are shifted and scaled, so that a slope has h (1 + h)^2 (1 + k)^3 times 3 of it and
+    /// the same the other way round, with h and k of at most 1/2.
     double slope_rounding(const Matrix2& y, const Part& s, const Part& t) const {
         return 8 * (s.half + t.half) * y.norm() * m_rounding;
     }

@@ -31,7 +31,7 @@ class InversePlan final : public WarpPlan {
                int& source_piece) const noexcept override;
     BlockPolynomial bicubic(const Block& block) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
-    /// The number of source points less one; at least 1 where they cannot be told apart.
+    /// The number of source points of a target point less one; at least 1 where they cannot be told apart.
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
 

@@ -550,9 +550,10 @@ double Mesh::data_error(const MeshCell& cell, const Patch& patch) const {
     return (most_value + others + steep * (shift(patch.x0, patch.x1) + shift(patch.y0, patch.y1))) * kSlack;
 }
 
-// With d and e the largest displacement of a vertex around and its error: a slope spans the cell, so that it
-// is at most 2 d in units of it, and a twist 4 d; together with the four values 36 d, and 36 e. A slope's own
-// rounding is that of both its spans, at most 12 lines' rounding over the cell's, and 8 u; twists twice that.
+// Bounds errors and sizes with d and e, the largest displacement of a vertex around and its error: a slope
+// spans the cell, so that it is at most 2 d in units of it, and a twist 4 d; together with the four values
+// 36 d, and 36 e. A slope's own rounding is that of both its spans, at most 12 lines' rounding over the
+// cell's, and 8 u; twists twice that.
 Mesh::Rough Mesh::rough(double x0, double y0, double x1, double y1) const {
     const int c0 = std::max(line_below(m_x, x0) - 1, 0), c1 = std::min(line_below(m_x, x1) + 2, columns());
     const int r0 = std::max(line_below(m_y, y0) - 1, 0), r1 = std::min(line_below(m_y, y1) + 2, rows());

@@ -35,7 +35,7 @@ std::array<T, 4> hermite_basis(const T& s) {
 /// The geometry of eq. 5.3 for both coordinates: g[a][b] with a = value at s = 0, at s = 1, d/ds at 0, at 1,
 /// and b so for t; s and t run over 0..1 in the cell.
 struct Patch {
-    double x0, y0, x1, y1;  ///< of the cell, pixels
+    double x0, y0, x1, y1;  ///< edges of the cell, pixels
     Point<double> g[4][4];
 
     /// The displacement at (s, t).
@@ -58,8 +58,8 @@ struct Patch {
 
 /// A cell that is not subdivided.
 struct MeshCell {
-    int level = 0, column = 0, row = 0;  ///< on the lattice of its level
-    int node = -1;                       ///< the mesh's own; -1 at level 0
+    int level = 0, column = 0, row = 0;  ///< place in the lattice of its level
+    int node = -1;                       ///< number of the mesh's node; -1 at level 0
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
@@ -129,10 +129,11 @@ class Mesh {
         return {(s * (patch.x1 - patch.x0) + patch.x0) * m_scale.x + d.x,
                 (t * (patch.y1 - patch.y0) + patch.y0) * m_scale.y + d.y};
     }
-    /// The map.
+    /// The map at a point.
     Point<double> at(double x, double y) const { return at(patch(cell_at(x, y)), x, y); }
 
-    /// +1, or -1 where most of the mesh (of the area that its cells take in "from") is flipped.
+    /// The orientation of the map: +1, or -1 where most of the mesh (of the area that its cells take in
+    /// "from") is flipped.
     double orientation() const { return m_orientation; }
 
   private:
@@ -187,13 +188,13 @@ class Mesh {
     Size m_from, m_to;
     Point<double> m_scale;
     std::vector<double> m_x, m_y;
-    double m_line_rounding = 4 * 0x1p-53;  ///< of a line's magnitude; 0 where all are exact
+    double m_line_rounding = 4 * 0x1p-53;  ///< relative rounding of a line; 0 where all are exact
     std::vector<Point<double>> m_values;   ///< displacements at the vertices of level 0
-    std::vector<float> m_value_errors;     ///< of either coordinate
-    std::vector<Knot> m_base_knots;        ///< of level 0, unless there are very many
-    std::vector<int> m_base_child;         ///< of the cells of level 0, where there are more levels
+    std::vector<float> m_value_errors;     ///< errors of these, in either coordinate
+    std::vector<Knot> m_base_knots;        ///< knots of level 0, unless there are very many
+    std::vector<int> m_base_child;         ///< nodes of the cells of level 0, where there are more levels
     std::vector<Node> m_nodes;
-    std::vector<Knot> m_knots;  ///< of the nodes
+    std::vector<Knot> m_knots;  ///< knots of the nodes
     double m_orientation = 1;
 };
 

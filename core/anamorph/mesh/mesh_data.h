@@ -56,9 +56,9 @@ struct ControlMesh {
     Point<double> vertex(std::size_t i) const {
         return samples ? Point<double>{samples->uv[2 * i], samples->uv[2 * i + 1]} : vertices[i];
     }
-    /// Where the lines of the mesh stand: columns + 1 and rows + 1 ascending positions. When empty, the
-    /// lines are spread evenly from edge to edge of the image. Between the outermost lines and the edges
-    /// the map goes on linearly.
+    /// The positions of the lines of the mesh: columns + 1 and rows + 1 ascending positions. When empty, the
+    /// lines are spread evenly from edge to edge of the image. Between the outermost lines and the edges the
+    /// map goes on linearly.
     std::vector<double> x_lines, y_lines;
 
     /// A cell by its place in the lattice.

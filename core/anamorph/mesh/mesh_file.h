@@ -42,9 +42,9 @@ WarpMap parse_points_csv(std::string_view text, std::string_view name);
 /// Reads a warp in the format that the ending of the name says: CSV for .csv, else JSON.
 WarpMap parse_warp_file(std::string_view text, std::string_view name);
 
-/// So many pixels of an ST-map may be vertices.
+/// The most pixels of an ST-map that may be vertices.
 inline constexpr int kMostStMapVertices = 1 << 28;
-/// An ST-map may have so many pixels either way.
+/// The most pixels of an ST-map either way.
 inline constexpr int kMostStMapSide = 1 << 20;
 
 /// Makes a pull mesh from an ST-map: pixel (i, j) of an image of width x height says where in the source the centre

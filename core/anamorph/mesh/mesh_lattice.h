@@ -18,8 +18,8 @@
 
 namespace anamorph {
 
-/// Four lines about a position, first ... first + 3, and what the values there count in a function's value
-/// and in its derivative per pixel. Those of [begin, end) alone count in the value.
+/// Four lines about a position, first ... first + 3, and the weights of the values there in a function's
+/// value and in its derivative per pixel. Those of [begin, end) alone count in the value.
 struct LatticeWeights {
     int first = 0, begin = 0, end = 4;
     double value[4] = {}, slope[4] = {};
@@ -30,11 +30,11 @@ struct LatticeWeights {
     int line() const { return first + begin; }
 
     LatticeWeights() = default;
-    /// `lines` ascend; at least 4.
+    /// Finds the weights at a position. `lines` ascend; at least 4.
     LatticeWeights(std::span<const double> lines, double at);
 };
 
-/// Is a mesh the sum above: of one level, with four lines either way?
+/// Is a mesh a lattice: of one level, with four lines either way?
 inline bool is_lattice(const Mesh& mesh) {
     return !mesh.has_levels() && mesh.columns() >= 3 && mesh.rows() >= 3;
 }
@@ -42,7 +42,7 @@ inline bool is_lattice(const Mesh& mesh) {
 /// The map at (x, y), whose weights are given.
 Point<double> lattice_point(const Mesh& mesh, const LatticeWeights& across, const LatticeWeights& down,
                             double x, double y);
-/// Its derivatives.
+/// The derivatives of the map, whose weights are given.
 Jacobian lattice_jacobian(const Mesh& mesh, const LatticeWeights& across, const LatticeWeights& down);
 
 namespace lattice_detail {
@@ -70,7 +70,8 @@ Point<double> lattice_displacement(const At& at, const LatticeWeights& across, c
                    [&](int i) { return at(across.first + i, down.first + j); });
     });
 }
-/// The derivatives of its map, `scale` being those of the identity.
+/// The derivatives of the map of a lattice whose vertices are displaced by at(column, row), `scale` being
+/// those of the identity.
 template <class At>
 Jacobian lattice_jacobian(const At& at, const Point<double>& scale, const LatticeWeights& across,
                           const LatticeWeights& down) {

@@ -29,9 +29,9 @@ class WarpPlan : public BlockMap {
   public:
     using BlockMap::BlockMap;
 
-    /// At a pixel's centre: what MeshWarpOptions::folds shows.
+    /// The number at a pixel's centre that MeshWarpOptions::folds shows.
     virtual float folds(double x, double y) const noexcept = 0;
-    /// How many pixels of a box are folded (folds is not 0).
+    /// The number of pixels of a box that are folded (folds is not 0).
     virtual std::int64_t folded_pixels(const Box& box) const;
 };
 
@@ -66,7 +66,7 @@ class MeshPlan final : public WarpPlan {
     Mesh m_mesh;
     WarpScheme m_scheme;
     double m_tol;
-    bool m_lattice = false;  ///< is the mesh read as one (mesh_lattice.h)?
+    bool m_lattice = false;  ///< is the mesh read as a lattice (mesh_lattice.h)?
     std::shared_ptr<const ResidualTables> m_tables;
 };
 

@@ -20,29 +20,29 @@ struct ResidualPatch {
         Point<double> origin, right, down;
         /// The elements of G_N1 (eq. 5.5) or G_N2 (5.7) that belong to the tabulated products.
         float x[16] = {}, y[16] = {};
-        double sum = 0;        ///< of their magnitudes
-        double curvature = 0;  ///< of their magnitudes times (|f_ss| + |f_tt|) of their products
+        double sum = 0;        ///< sum of their magnitudes
+        double curvature = 0;  ///< sum of their magnitudes times (|f_ss| + |f_tt|) of their products
     };
     Triangle triangles[2];
 
     explicit ResidualPatch(const Patch& patch);
 
-    /// Rounding of tables, elements and sums to float; `block`: the map on the block, for the plane.
+    /// The rounding of tables, elements and sums to float; `block`: the map on the block, for the plane.
     double float_rounding(const Bicubic& block) const;
 };
 
 /// The fourteen products a_i(s) a_j(t) of basis functions (eq. 5.3), in the order of ResidualPatch.
 std::array<double, ResidualPatch::kProducts> residual_products(double s, double t);
 
-/// These products on a grid of kCells x kCells cells.
+/// The products residual_products() on a grid of kCells x kCells cells.
 class ResidualTables {
   public:
     static constexpr int kCells = 256;
 
-    /// Made once.
+    /// The tables, which are made once.
     static std::shared_ptr<const ResidualTables> shared();
 
-    /// What reading the tables bilinearly costs: for a product f at most (|f_ss| + |f_tt|) / 8 of a cell's
+    /// The error of reading the tables bilinearly: for a product f at most (|f_ss| + |f_tt|) / 8 of a cell's
     /// side squared, times its element.
     double bound(const ResidualPatch& patch) const;
 
@@ -50,8 +50,8 @@ class ResidualTables {
     struct Origin {
         double x, y, step;
     };
-    /// Pixels [begin, end) of a row at parameter t, with s = first + i * step: the map less what `origin`
-    /// says.
+    /// Finds pixels [begin, end) of a row at parameter t, with s = first + i * step: the map less what
+    /// `origin` says.
     void row(const ResidualPatch& patch, const Origin& origin, double first, double step, double t, int begin,
              int end, float* x, float* y) const;
 

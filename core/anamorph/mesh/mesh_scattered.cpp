@@ -248,7 +248,7 @@ class TriangleSubdivider {
         return {at.across.middle - at.across.half, at.down.middle - at.down.half,
                 at.across.middle + at.across.half, at.down.middle + at.down.half};
     }
-    /// Of the identity's part: the scale, a product and a sum.
+    /// The rounding of the identity's part: the scale, a product and a sum.
     double identity_rounding(const Bounds& box) const {
         return 4 * 0x1p-53 *
                std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * m_map.scale().x,
@@ -268,10 +268,10 @@ class TriangleSubdivider {
         return 1.4143 * either;
     }
 
-    /// The same of a cubic as a polynomial on all of a box, which may reach beyond its triangle. A Taylor
-    /// coefficient of a weight takes less than 40 roundings, sums with the Bezier points 11; those of what is
-    /// made of it (restrictions, differences, Chebyshev's form; rows by Horner's rule, in parameters off by two)
-    /// less than 200.
+    /// How far a cubic, as a polynomial on all of a box, is from the map of the given points. The box may
+    /// reach beyond its triangle. A Taylor coefficient of a weight takes less than 40 roundings, sums with
+    /// the Bezier points 11; those of what is made of it (restrictions, differences, Chebyshev's form; rows
+    /// by Horner's rule, in parameters off by two) less than 200.
     double form_rounding(const CubicTriangle& t, const Centres& at) const {
         const Bounds box = bounds_of(at);
         const CubicTriangle::Terms terms = t.terms(t.reach(box));

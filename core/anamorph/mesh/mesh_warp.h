@@ -17,9 +17,9 @@ struct MeshWarpOptions {
     Filter filter = Filter::antialias;
     Wrap wrap = Wrap::automatic;  ///< automatic is black
     Output output = Output::color;
-    /// In place of `output`: 0 where the map is one to one, else for a map that pulls 1 where it shows the
-    /// source turned over (its Jacobian's determinant has the other sign than that of most of the mesh), and
-    /// for a mesh that pushes the number of further source points that land on the pixel.
+    /// Shows, in place of `output`, 0 where the map is one to one, else for a map that pulls 1 where it shows
+    /// the source turned over (its Jacobian's determinant has the other sign than that of most of the mesh),
+    /// and for a mesh that pushes the number of further source points that land on the pixel.
     bool folds = false;
     double amount = 1;  ///< blends vertices from the identity (0) to the warp (1) and beyond; finite
 };

@@ -27,12 +27,12 @@ struct SampleRange {
 /// Extends a range by `count` pairs.
 void extend_range(const float* uv, std::ptrdiff_t count, SampleRange& range);
 
-/// One coordinate of the i-th of a row of samples v: first + step i + scale v.
+/// The numbers of one coordinate of the i-th of a row of samples v: first + step i + scale v.
 struct SampleAxis {
     double scale, first, step;
 };
-/// `count` samples as places, computed in double and rounded to float: the same bits on all instruction sets.
-/// Room for 16 more is written to.
+/// Writes `count` samples as places, computed in double and rounded to float: the same bits on all
+/// instruction sets. Room for 16 more is written to.
 void sample_places(const float* uv, int count, const SampleAxis& x, const SampleAxis& y, float* to_x,
                    float* to_y);
 

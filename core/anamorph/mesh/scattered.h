@@ -21,13 +21,14 @@ namespace anamorph {
 /// One cubic on a triangle whose corners are an edge of the triangulation and the middle of its triangle.
 struct CubicTriangle {
     Point<double> corner[3];
-    /// Barycentric coordinates for corners 0 and 1 are c + a (x - base.x) + b (y - base.y). The base is a
-    /// whole pixel of the image, so that differences lose nothing.
+    /// The base of the barycentric coordinates for corners 0 and 1, which are c + a (x - base.x) + b
+    /// (y - base.y). It is a whole pixel of the image, so that differences lose nothing.
     Point<double> base;
     double a[2], b[2], c[2];
     /// Bezier points of the displacement: 300, 030, 003, 210, 120, 201, 021, 102, 012, 111.
     Point<double> bezier[10];
-    /// How far c, a and b, and any coordinate of the Bezier points are from what the given points define.
+    /// The largest distances of c, of a and b, and of any coordinate of the Bezier points from what the given
+    /// points define.
     double c_error, slope_error, bezier_error[10];
 
     template <class T>
@@ -46,16 +47,16 @@ struct CubicTriangle {
         return sum;
     }
 
-    /// What both barycentric coordinates together err by at most in a rectangle, as computed in double.
+    /// The largest error of both barycentric coordinates together in a rectangle, as computed in double.
     double place_error(const Bounds& box) const;
     /// The largest magnitudes of the three barycentric coordinates in a rectangle.
     struct Reach {
         double u, v, w;
     };
     Reach reach(const Bounds& box) const;
-    /// For coordinates of at most these magnitudes, the sum of the magnitudes of all terms of a coordinate
-    /// of the displacement, of the errors of its Bezier points, and of its derivatives by the first two
-    /// coordinates.
+    /// For barycentric coordinates of at most given magnitudes, the sum of the magnitudes of all terms of a
+    /// coordinate of the displacement, of the errors of its Bezier points, and of its derivatives by the
+    /// first two coordinates.
     struct Terms {
         double value, error, slope;
     };
@@ -64,14 +65,14 @@ struct CubicTriangle {
     /// The least barycentric coordinate: not negative inside.
     double inside(double x, double y) const;
     Bounds bounds() const;
-    /// Does it share a point with a rectangle, or nearly?
+    /// Does the triangle share a point with a rectangle, or nearly?
     bool meets(const Bounds& box) const;
 };
 
 class Scattered {
   public:
-    /// `from` is the target, `to` the source. Throws Error that names `name` and the point: one that is not a
-    /// number, two at the same place, none at all.
+    /// Triangulates points. `from` is the target, `to` the source. Throws Error that names `name` and the
+    /// point: one that is not a number, two at the same place, none at all.
     Scattered(const ControlPoints& points, const Size& from, const Size& to, double amount,
               const std::string& name = "points");
 
@@ -92,7 +93,7 @@ class Scattered {
     }
     Point<double> at(double x, double y) const { return at(triangle_at(x, y), x, y); }
 
-    /// +1, or -1 where the affine map that fits all pairs best flips the image.
+    /// The orientation of the map: +1, or -1 where the affine map that fits all pairs best flips the image.
     double orientation() const { return m_orientation; }
 
   private:

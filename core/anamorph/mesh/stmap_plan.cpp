@@ -59,7 +59,7 @@ Point<double> StMapPlan::point(int column, int row) const {
     return {here.x + (there.x - here.x) * m_amount, here.y + (there.y - here.y) * m_amount};
 }
 
-/// Of the vertices of the lattice, of which the outermost go on linearly by half a pixel.
+/// The displacement of a vertex of the lattice, of which the outermost go on linearly by half a pixel.
 Point<double> StMapPlan::displacement(int column, int row) const {
     const auto beyond = [](const Point<double>& edge, const Point<double>& inner) {
         return edge + (edge - inner) * 0.5;
@@ -98,8 +98,8 @@ void StMapPlan::exact_rows(const Block& block, int begin, int end, const DoubleR
         }
 }
 
-/// Of a pixel's point in double, computed in either way: products and sums of its place and its sample's, 8 u
-/// of them at most.
+/// The rounding of a pixel's point in double, computed in either way: products and sums of its place and its
+/// sample's, 8 u of them at most.
 double StMapPlan::rounding() const {
     if (m_amount == 1) return 0;
     const double place = std::max(m_source.width, m_source.height) * (1 + m_samples->most);

@@ -14,11 +14,11 @@ namespace anamorph {
 
 class StMapPlan final : public WarpPlan {
   public:
-    /// Does a mesh say where each pixel of a target comes from?
+    /// Does a mesh say the source point of each pixel of a target?
     static bool serves(const ControlMesh& mesh, const Size& target);
 
-    /// Of a mesh that serves. `tol`: source pixels; 0 or scheme exact: every pixel in double. Throws Error when
-    /// tol is negative or not a number, and where Mesh does.
+    /// Plans a mesh that serves. `tol`: source pixels; 0 or scheme exact: every pixel in double. Throws Error
+    /// when tol is negative or not a number, and where Mesh does.
     StMapPlan(const ControlMesh& mesh, const Size& target, const Size& source, double amount,
               WarpScheme scheme, double tol, const std::string& name);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The maps of a morph (morph/feature_lines.h) in blocks, one layer a shape: what every way to plan them has in
-// common.
+// The maps of a morph (morph/feature_lines.h) in blocks, one layer a shape: the members that all ways to plan
+// them share.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ class FeatureBlocks : public BlockMap {
   protected:
     static constexpr int kRegion = 128;
 
-    /// The map outlives this.
+    /// Keeps a reference to the map.
     FeatureBlocks(const FeatureMap& map, std::vector<int> shapes);
 
     const FeatureMap& map() const { return m_map; }
@@ -61,7 +61,7 @@ class FeatureBlocks : public BlockMap {
             y.resize(room);
         }
     };
-    /// More threads than this compute some points twice.
+    /// The most threads that wait: with more, some points are computed twice.
     static constexpr std::size_t kMostWaiting = 64;
 
     std::unique_ptr<Waiting> room_for_next(const Block& block, int begin, int end) const noexcept;

@@ -9,19 +9,19 @@
 // A pixel X in the frame of a line from p to q: along = (X - p) . e / |e| = u |e| and beside = v, with
 // e = q - p.
 
-/// How far along a line of unit direction (ux, uy) the point X lies, with X - p = (dx, dy).
+/// The distance of the point X along a line of unit direction (ux, uy), with X - p = (dx, dy).
 template <class T, class U>
 inline T along_line(const T& dx, const T& dy, const U& ux, const U& uy) {
     return dx * ux + dy * uy;
 }
-/// How far beside that line X lies.
+/// The distance of X beside such a line.
 template <class T, class U>
 inline T beside_line(const T& dx, const T& dy, const U& ux, const U& uy) {
     return dy * ux - dx * uy;
 }
 
-/// The square of dist of eq. 5.11, from how far X lies before p (-along), behind q (along - |e|) and beside the
-/// line.
+/// The square of dist of eq. 5.11, from the distances of X before p (-along), behind q (along - |e|) and
+/// beside the line.
 template <class T>
 inline T square_to_line(const T& before, const T& behind, const T& beside) {
     const T beyond = max(max(before, behind), T(0));

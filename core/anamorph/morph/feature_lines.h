@@ -35,7 +35,7 @@ class Features {
         double width = 0, height = 0;
     };
 
-    /// No lines yet. Throws Error when there are fewer than two shapes.
+    /// Starts without lines. Throws Error when there are fewer than two shapes.
     explicit Features(int shapes = 2);
 
     int shapes() const { return m_shapes; }
@@ -47,7 +47,7 @@ class Features {
     }
     /// The factor of the weight (eq. 5.11) of line i; 1 by default.
     double weight(std::size_t i) const { return m_weights[i]; }
-    /// What messages call line i: its name or "line 7" (the first is 1).
+    /// The name of line i in messages: its own or "line 7" (the first is 1).
     std::string name(std::size_t i) const;
 
     /// Adds a line, given once for each shape. Throws Error, naming the line, where one of them has no length (in the
@@ -135,7 +135,7 @@ class FeatureMap {
         Point<double> p, along;  ///< its first point, and the unit vector from there to the second one, q
         double length;
         double factor;  ///< weight * length^(p b), relative to the greatest of each
-        bool moves;     ///< it is not the same line in every shape
+        bool moves;     ///< is it not the same line in every shape?
     };
     /// The displacement by one line for one shape, in the target's pixels: at p, and its rates along and beside the line.
     struct Displacement {
@@ -143,11 +143,11 @@ class FeatureMap {
     };
     /// Bounds of the rounding of a line's numbers, which are doubles computed from others.
     struct Rounding {
-        double place;    ///< of its ends, in the target's pixels
-        double turn;     ///< of its direction, and of the rates of its displacements
-        double weight;   ///< of its weight without the distance, relative
+        double place;    ///< rounding of its ends, in the target's pixels
+        double turn;     ///< rounding of its direction, and of the rates of its displacements
+        double weight;   ///< rounding of its weight without the distance, relative
         double stretch;  ///< no rounding: the greatest length in a shape over that in the target
-        bool exact;      ///< its ends p and q are exact
+        bool exact;      ///< are its ends p and q exact?
         Point<double> q;
     };
 

@@ -86,7 +86,8 @@ struct Planned {
     NearFar blocks;
 };
 
-/// Of pictures whose colours have a weight, two at a time share one plan; each of its layers has its shape's picture.
+/// The maps of the pictures whose colours have a weight: two at a time share one plan; each of its layers has
+/// its shape's picture.
 std::vector<Picture::Map> maps_of(const std::shared_ptr<const FeatureMap>& map,
                                   const std::vector<double>& color, const MorphOptions& options) {
     std::vector<int> drawn;

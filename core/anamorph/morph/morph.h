@@ -14,10 +14,11 @@
 
 namespace anamorph {
 
-/// exact: every pixel in double. automatic: near/far, the fastest that holds the tolerance.
+/// How a morph is approximated. exact: every pixel in double. automatic: near/far, the fastest that holds the
+/// tolerance.
 enum class MorphScheme { automatic, exact };
 
-/// What a morph shows, and how it is drawn.
+/// How a morph is drawn, and what is shown of it.
 struct MorphOptions {
     MorphScheme scheme = MorphScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double
@@ -30,8 +31,8 @@ struct MorphOptions {
     bool lines = false;  ///< draws the features of every shape over the colours
 
     static constexpr double kMostT = 1e6;
-    double t = 0.5;                      ///< of the shape: 0 is A's, 1 is B's; kMostT at most, either way
-    std::optional<double> t_color = {};  ///< of the colours; as t unless given
+    double t = 0.5;                      ///< the shape's time: 0 is A's, 1 is B's; kMostT at most, either way
+    std::optional<double> t_color = {};  ///< the colours' time; t unless it is given
     /// One weight a key shape, kMostT at most, with sum 1: in place of t and t_color, of which there are but
     /// two.
     std::vector<double> shape_weights = {}, color_weights = {};
@@ -44,7 +45,8 @@ struct MorphOptions {
 void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
                    int shapes);
 
-/// The one of so many pictures whose pixels a morph in colour shows as they are, moved and never blended; none, of others.
+/// The picture, of so many, whose pixels a morph in colour shows as they are, moved and never blended; none
+/// for other morphs.
 std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictures);
 
 /// Pictures morphed, of which `pictures` are the sizes at level 0, one a shape. All that are read have as many channels; the bits of a

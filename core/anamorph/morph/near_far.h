@@ -25,7 +25,7 @@ struct NearFarOptions {
 
 class NearFar final : public FeatureBlocks {
   public:
-    /// The map outlives this. Throws Error when tol is negative or not a number.
+    /// Keeps a reference to the map. Throws Error when tol is negative or not a number.
     NearFar(const FeatureMap& map, const NearFarOptions& options);
     ~NearFar() override;
 

@@ -14,16 +14,16 @@ using simd::FieldLine;
 using simd::kComponents;
 using simd::LineTable;
 
-/// Room for a polynomial: K x K coefficients of 8 numbers.
+/// The room for a polynomial: K x K coefficients of 8 numbers.
 inline constexpr std::size_t kCoefficients = simd::kMaxDegree * simd::kMaxDegree * 8;
 
 /// Lines and what is known of them over the cell at hand; one for each depth of the recursion.
 class Candidates {
   public:
-    /// All lines of a region.
+    /// Takes all lines of a region.
     void take(const std::vector<FieldLine>& all, const std::vector<float>& slopes);
-    /// The near lines of another: in its table, the others with factor 0, or in one of their own where that
-    /// is shorter.
+    /// Takes the near lines of other candidates: in their table, with factor 0 for the rest, or in one of its
+    /// own where that is shorter.
     void take_near(const Candidates& from);
 
     LineTable table() const {
@@ -42,7 +42,7 @@ class Candidates {
 
     /// Marks lines far, those of least error first, as long as their errors fit the budget.
     simd::LineSums select(const simd::LineBounds& bounds, float spread, float unit);
-    std::vector<std::int32_t> near, far;  ///< places in the table
+    std::vector<std::int32_t> near, far;  ///< positions of lines in the table
     int near_count = 0, far_count = 0;
 
     /// The polynomial that the cell has from the cells above it; lane 5 to 7 of each coefficient are 0.

@@ -14,15 +14,16 @@ struct Chebyshev {
     int k;
     float nodes[kMaxDegree];
     double lebesgue;
-    /// From values at the nodes to coefficients of powers.
+    /// The matrix from values at the nodes to coefficients of powers.
     double powers[kMaxDegree * kMaxDegree];
-    /// From coefficients in s to those in s' where s = (s' -+ 1) / 2: the left and the right half.
+    /// The matrices from coefficients in s to those in s' where s = (s' -+ 1) / 2: for the left and the right
+    /// half.
     double halves[2][kMaxDegree * kMaxDegree];
 
     explicit Chebyshev(int degree);
 };
 
-/// Coefficients each way that make a tolerance cheapest (measured).
+/// The number of coefficients each way that makes a tolerance cheapest (measured).
 int degree_for(double tol);
 
 }  // namespace anamorph::near_far

@@ -66,7 +66,8 @@ struct LineOnBox {
     double reach;          ///< the greatest distance of its displacement from the reference
 };
 
-// Of two roundings more than hypot's, which is nothing beside the factors; what overflows has no bound.
+// The length of a vector, with two roundings more than hypot's, which is nothing beside the factors; what
+// overflows has no bound.
 double length(double x, double y) {
     return std::sqrt(x * x + y * y);
 }

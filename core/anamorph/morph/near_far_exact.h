@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rounding does to pixels of a morph that are evaluated in double.
+// The rounding of pixels of a morph that are evaluated in double.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,13 @@
 
 namespace anamorph {
 
-/// By how much a line as FeatureMap, in double, sees it is off at points of a box, in the target's pixels.
+/// The error of a line as FeatureMap, in double, sees it at points of a box, in the target's pixels.
 struct LineOff {
     double distance;      ///< a + dist
-    double displacement;  ///< what it says
+    double displacement;  ///< the displacement of the line
 };
-/// `rho`: at least the points' distance from the line's p. `farthest`: at least |x| + |y| of each.
+/// Bounds the error of line i at points of a box. `rho`: at least the points' distance from the line's p.
+/// `farthest`: at least |x| + |y| of each.
 LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthest);
 
 /// The most by which FeatureMap, in double, is off from the lines' exact formula at the pixels of a box, for

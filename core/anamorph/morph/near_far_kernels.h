@@ -58,15 +58,15 @@ inline constexpr float kPlaceRelative = 16 * kFloatRounding, kPlaceApart = 1e-3f
 inline constexpr int kNodeRun = 16;
 inline constexpr double kNodeRounding = (kNodeRun + 2) * 0x1p-24;
 
-/// Near lines are added up in runs of so many, and then the runs: the additions that a line's term goes
-/// through, at most.
+/// The number of near lines that are added up in a run; then the runs are added up: near_additions() is the
+/// number of additions that a line's term goes through, at most.
 inline constexpr int kNearRun = 32;
 constexpr int near_additions(int lines) {
     return lines <= kNearRun ? lines : kNearRun + (lines + kNearRun - 1) / kNearRun;
 }
 
-/// Sums of floats over lines: so many are added up in each of 16 lanes, those in four steps, and the rest in
-/// double.
+/// The number of lines that are added up in float in each of 16 lanes; the lanes are added up in four steps,
+/// and the rest in double.
 inline constexpr int kSumLanes = 16;
 /// The largest relative error of such a sum of positive numbers: 20 additions, and 4 steps to make each of them.
 inline constexpr double kSumRounding = 24 * 0x1p-24;
@@ -128,7 +128,7 @@ struct LineBounds {
     float* least;  ///< the least weight in the cell
     float* value;  ///< most times the error of the weight in proportion, of its interpolation and by rounding
                    ///< at the nodes; infinite where unknown
-    float* linear;   ///< the same of the weight times an offset in the cell, times the displacement's change
+    float* linear;   ///< as `value`, of the weight times an offset, times the displacement's change
     float* nearest;  ///< a + dist, the least in the cell
     float* displacement[kComponents];  ///< displacements at the centre
     double center[kSums];              ///< sums at the centre

@@ -24,8 +24,9 @@ HWY_INLINE V Set(float x) {
     return hn::Set(Floats(), x);
 }
 
-// The same bits whatever the processor: no fused multiply-adds, which some have, and no estimates of
-// quotients and roots, which differ; sums run over kWide lanes, in as many vectors as that takes.
+// The lanes of sums, so that bits are the same whatever the processor: no fused multiply-adds, which some
+// have, and no estimates of quotients and roots, which differ; sums run over kWide lanes, in as many vectors
+// as that takes.
 constexpr int kWide = 16;
 constexpr int kParts = kWide / kLanes;
 
@@ -205,8 +206,8 @@ HWY_INLINE AxisError BesideError(int k, V x) {
     return {e, hn::Mul(x, hn::Add(g, e))};
 }
 
-/// The same of (a + |s - z|)^-b with z = sigma + i eta, the end of a line beside the cell. sigma and eta are
-/// at most `more` below what they are.
+/// Relative interpolation error of (a + |s - z|)^-b, and of s times it, on [-1, 1], with z = sigma + i eta,
+/// the end of a line beside the cell. sigma and eta are at most `more` below what they are.
 HWY_INLINE AxisError EndError(int k, V sigma, V eta, V more) {
     const V one = Set(1);
     const V eta2 = hn::Mul(eta, eta), minus = hn::Sub(sigma, one), plus = hn::Add(sigma, one);
@@ -322,7 +323,7 @@ HWY_INLINE AxisError ClosedError(const CellBounds& c, const SeenLines& l, V hx, 
     return {either(by_line.value, by_end.value), either(by_line.linear, by_end.linear)};
 }
 
-/// Of interpolation on both axes.
+/// The interpolation error on both axes.
 HWY_INLINE AxisError InterpolationError(const CellBounds& c, const SeenLines& l) {
     if (!(c.b > 0)) return {Set(0), Set(0)};
     const V hx = hn::Mul(c.half, hn::Abs(l.along_x)), hy = hn::Mul(c.half, hn::Abs(l.along_y));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What near/far keeps of a region for drawing it: its cells, their polynomials and their near lines.
+// The data that near/far keeps of a region for drawing it: its cells, their polynomials and their near lines.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ inline constexpr int kRegion = static_cast<int>(2 * kHalfRegion);
 
 using Vector = std::array<double, kComponents>;
 
-/// The longer of a vector's two halves: the displacements of the shapes.
+/// The length of the longer half of a vector: the displacements of the shapes.
 inline double length_of(const Vector& v) {
     return std::sqrt(std::max(v[0] * v[0] + v[1] * v[1], v[2] * v[2] + v[3] * v[3]));
 }
@@ -34,15 +34,15 @@ struct Cell {
     double bound;  ///< not of exact cells
     CellFrame frame;
     std::int32_t base[kComponents];
-    std::size_t coefficients, near;  ///< where they begin in the region's lists
+    std::size_t coefficients, near;  ///< where coefficients and near lines begin in the region's lists
     int near_count;
-    bool fine;  ///< how near lines are placed
+    bool fine;  ///< tells how near lines are placed
 };
 
 struct Region final : RegionData {
     std::vector<Cell> cells;
     std::vector<float> coefficients;
-    std::vector<FieldLine> lines;  ///< that are near, cell by cell, as seen from the cell's centre
+    std::vector<FieldLine> lines;  ///< the near lines, cell by cell, as seen from the cell's centre
     Vector origin;                 ///< source point of the region's centre under the reference displacement
 };
 

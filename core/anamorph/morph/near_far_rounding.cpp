@@ -41,7 +41,8 @@ constexpr double kNearRegion = kHalfRegion;
 // dist is at most 16 / 100, of which 1 / (1 - e) makes less than the twice as much that line_off allows for;
 // where a + dist is less, near_error counts it among the rest. kPlaceApart has room for 90 times as much.
 constexpr double kMostPlace = 1e-5;
-// And far ones in proportion: kPlaceRelative has room for 10 units.
+// The farthest that far lines may be out of place in double, in proportion: kPlaceRelative has room for
+// 10 units.
 constexpr double kMostFarPlace = 8 * kRoundingUnit;
 
 }  // namespace

@@ -31,12 +31,12 @@ constexpr double kMostWeightError = 0.05;
 constexpr int kFloor = 8;
 // The parts of the tolerance that interpolation may use, one after the other; the rest is for rounding.
 constexpr double kInterpolationShares[] = {0.9, 0.55};
-// And in the smallest cells, before they fall back on double.
+// The parts that interpolation may use in the smallest cells, before they fall back on double.
 constexpr double kSmallestShares[] = {0.2, 0};
 // Where rounding takes more of it on a large cell even without near lines, smaller ones seldom hold it.
 constexpr double kMostRoundingShare = 0.2;
-// And the part of what is left of it that a cell uses up for lines that are far already from a cell to be
-// cut.
+// The part of the tolerance that is left which a cell uses up for lines that are far already from a cell to
+// be cut.
 constexpr double kParentShare = 0.25;
 
 /// How many near lines a cell of this size may have before it is cut (measured).

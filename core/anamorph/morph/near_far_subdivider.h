@@ -48,15 +48,15 @@ struct FarSums : simd::LineSums {
     }
 };
 
-/// What is known of a cell beside its lines' own bounds.
+/// The facts that are known of a cell beside its lines' own bounds.
 struct Known {
     CellFrame frame;
     Vector center;    ///< displacement at the centre
-    double least;     ///< sum of weights, at least
-    double mean;      ///< the mean of |D_i - center|, at most
-    double spread;    ///< |D - center|, at most
+    double least;     ///< lower bound of the sum of weights
+    double mean;      ///< upper bound of the mean of |D_i - center|
+    double spread;    ///< upper bound of |D - center|
     double offset;    ///< length of `center`
-    double farthest;  ///< the greatest of them
+    double farthest;  ///< the greatest of the |D_i - center|
     bool finite;
 };
 

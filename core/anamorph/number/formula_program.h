@@ -23,7 +23,7 @@
 
 namespace anamorph {
 
-/// What a step of a program computes from its operands a, b and c.
+/// The operation that a step of a program computes from its operands a, b and c.
 enum class StepKind : std::uint8_t {
     number,    ///< numbers[a]
     constant,  ///< constants[a]
@@ -37,8 +37,8 @@ enum class StepKind : std::uint8_t {
     negation,
     square,
     sqrt,
-    sine_and_cosine,  ///< to result and result + 1
-    angle,            ///< of (b, a), a up, from -pi to pi
+    sine_and_cosine,  ///< results go to result and result + 1
+    angle,            ///< angle of (b, a), a up, from -pi to pi
     exp,
     log,
     asinh,
@@ -46,7 +46,7 @@ enum class StepKind : std::uint8_t {
     choice  ///< b where a < 0, else c
 };
 
-/// Operands and results are numbers of registers.
+/// A step of a program. Operands and results are numbers of registers.
 struct ProgramStep {
     StepKind kind;
     std::uint8_t result, a = 0, b = 0, c = 0;
@@ -54,7 +54,7 @@ struct ProgramStep {
 
 /// Computes numbers from x and y, which are registers 0 and 1.
 struct FormulaProgram {
-    /// Registers are reused; more are alive at once in no program.
+    /// The number of registers. They are reused; no program has more alive at once.
     static constexpr int kRegisters = 64;
 
     std::vector<ProgramStep> steps;
@@ -75,7 +75,7 @@ struct DefinedInterval : Interval {
 inline DefinedInterval sqrt(const DefinedInterval& a) {
     return sqrt(Interval(a.lo < 0 && a.hi >= 0 ? 0 : a.lo, a.hi));
 }
-/// Of what is infinite there is none.
+/// sin and cos of an interval; all numbers where it is infinite.
 inline void sin_cos(const DefinedInterval& a, DefinedInterval& s, DefinedInterval& c) {
     const bool is_finite = std::isfinite(magnitude(a));
     s = is_finite ? sin(a) : Interval::all();
@@ -100,7 +100,8 @@ T choose(bool condition, const T& a, const T& b) {
 inline Interval choose(Certainty condition, const Interval& a, const Interval& b) {
     return select(condition, a, b);
 }
-/// What is computed may be one side, and the exact value the other.
+/// Chooses one of two numbers. Where that is open, what is computed may be the one, and the exact value the
+/// other.
 template <class Real>
 Rounded<Real> choose(Certainty condition, const Rounded<Real>& a, const Rounded<Real>& b) {
     Rounded<Real> r = select(condition, a, b);
@@ -119,7 +120,7 @@ Jet<Interval, N> choose(Certainty condition, const Jet<Interval, N>& a, const Je
     if (condition == Certainty::open) return unbounded<N>();
     return condition == Certainty::yes ? a : b;
 }
-/// One of four, with no bound.
+/// Makes jet i of four unbounded.
 template <int N>
 void set_unbounded(Jets<Interval, N>& jets, int i) {
     // Coefficients above the degree are not stored: those of the others are 0.
@@ -151,7 +152,7 @@ T floor_of(T a) {
 inline Interval floor_of(const Interval& a) {
     return {std::floor(a.lo), std::floor(a.hi)};
 }
-/// A whole number that lies within the error may be on either side.
+/// The floor of a number. A whole number that lies within the error may be on either side.
 template <class Real>
 Rounded<Real> floor_of(const Rounded<Real>& a) {
     Rounded<Real> r(floor_of(a.range), 0, 0);

@@ -131,7 +131,8 @@ GlslNumber max(const GlslNumber& a, const GlslNumber& b) {
     if (!text_of(a, b)) return std::max(a.constant(), b.constant());
     return call("max", a, b);
 }
-/// With m = e^-2|a|: tanh |a| = (1 - m) / (1 + m), and 1 / cosh(a) = 2 e^-|a| / (1 + m).
+/// Writes tanh a into s and returns 1 / cosh(a). With m = e^-2|a|: tanh |a| = (1 - m) / (1 + m), and
+/// 1 / cosh(a) = 2 e^-|a| / (1 + m).
 GlslNumber scaled_sinh(const GlslNumber& a, GlslNumber& s) {
     const GlslCondition below = is_negative(a);
     const GlslNumber size = select(below, -a, a), m = exp(size * -2.0), tangent = (1.0 - m) / (m + 1.0);

@@ -20,10 +20,10 @@ namespace anamorph {
 
 class GlslText;
 
-/// A bool of the shader, or one that is known.
+/// A bool of the shader, or one that is known already.
 struct GlslCondition {
     GlslText* text = nullptr;
-    std::string name;  ///< of a variable, where there is a text
+    std::string name;  ///< name of a variable, where there is a text
     bool known = false;
 };
 
@@ -49,12 +49,13 @@ class GlslNumber {
 /// The lines that operations have written, in order.
 class GlslText {
   public:
-    /// Functions that the lines call; once in a shader, before them.
+    /// The functions that the lines call; they stand once in a shader, before them.
     static std::string_view prelude();
 
     /// A float variable of the shader that is there before the lines.
     GlslNumber input(const std::string& name) { return {*this, name}; }
-    /// A variable with the value of an expression: one that is there, or a new line's. `type`: float or bool.
+    /// The variable that has the value of an expression: one that is there, or that of a new line. `type`:
+    /// float or bool.
     std::string variable(const std::string& type, const std::string& expression);
     /// All lines, each a declaration.
     const std::string& lines() const { return m_lines; }
@@ -79,7 +80,7 @@ GlslNumber asinh(const GlslNumber& a);
 GlslNumber min(const GlslNumber& a, const GlslNumber& b);
 GlslNumber max(const GlslNumber& a, const GlslNumber& b);
 GlslNumber scaled_sinh(const GlslNumber& a, GlslNumber& s);
-/// With a hair as wide as float's roundings are.
+/// The number without a hair that is as wide as float's roundings are.
 GlslNumber without_hair(const GlslNumber& a);
 /// Squares of what is less than 2^-63 of a ray's length are as good as 0.
 inline double enlarger(const GlslNumber&, const GlslNumber&) {
@@ -90,7 +91,7 @@ GlslCondition is_zero(const GlslNumber& a);
 GlslCondition is_negative(const GlslNumber& a);
 GlslCondition both(const GlslCondition& a, const GlslCondition& b);
 GlslNumber select(const GlslCondition& condition, const GlslNumber& a, const GlslNumber& b);
-/// May it hold for a fragment?
+/// May a condition hold for a fragment?
 inline bool somewhere(const GlslCondition& condition) {
     return condition.text || condition.known;
 }

@@ -42,7 +42,7 @@ struct Interval {
 inline bool operator==(const Interval& a, const Interval& b) {
     return a.lo == b.lo && a.hi == b.hi;
 }
-/// True for all members of both: neither a < b nor b <= a need hold.
+/// Is a < b for all members of both? Neither a < b nor b <= a need hold.
 inline bool operator<(const Interval& a, const Interval& b) {
     return a.hi < b.lo;
 }
@@ -233,7 +233,7 @@ inline Interval exp(const Interval& a) {
 inline Interval log(const Interval& a) {
     return interval_detail::libm(std::log(a.lo), std::log(a.hi));
 }
-/// Powers of bases that are not negative: the extreme ones stand at corners.
+/// Encloses the powers of bases that are not negative: the extreme ones stand at corners.
 inline Interval pow(const Interval& a, const Interval& b) {
     if (!(a.lo >= 0)) return Interval::all();
     const double p = std::pow(a.lo, b.lo), q = std::pow(a.lo, b.hi);

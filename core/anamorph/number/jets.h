@@ -45,7 +45,7 @@ struct Four<Interval> {
     }
 };
 
-/// What holds for each of four.
+/// A condition for each of four numbers.
 template <class Condition>
 struct FourConditions {
     Condition of[kJets];
@@ -57,7 +57,7 @@ auto both(const FourConditions<A>& a, const FourConditions<B>& b) {
     return r;
 }
 
-/// Jet<T, N> four times. All are polynomials of at most `degree`; coefficients above are not stored.
+/// Four Jet<T, N>. All are polynomials of at most `degree`; coefficients above are not stored.
 template <class T, int N>
 struct Jets {
     static constexpr int kDegree = N, kSize = Jet<T, N>::kSize;
@@ -69,7 +69,7 @@ struct Jets {
     Jets(double constant) {  // NOLINT: a number is four
         for (int i = 0; i < kJets; ++i) c[0].set(i, T(constant));
     }
-    /// value + ds * s + dt * t
+    /// The variable value + ds * s + dt * t.
     static Jets variable(const T (&value)[kJets], const double (&ds)[kJets], const double (&dt)[kJets]) {
         Jets r;
         r.degree = 1;
@@ -81,9 +81,9 @@ struct Jets {
         return r;
     }
 
-    /// How many coefficients there are.
+    /// The number of coefficients that are stored.
     int terms() const { return Jet<T, N>::part(degree + 1); }
-    /// One of the four.
+    /// Jet i of the four.
     Jet<T, N> at(int i) const {
         Jet<T, N> jet;
         for (int k = 0; k < terms(); ++k) jet.c[k] = c[k][i];
@@ -95,7 +95,7 @@ struct Jets {
     }
 };
 
-/// The Taylor polynomials of blocks, and what bounds those of boxes.
+/// The Taylor polynomials of blocks, and the enclosures of those of boxes.
 using TaylorJets = Jets<double, 4>;
 using BoundJets = Jets<Interval, 5>;
 
@@ -116,7 +116,7 @@ ANAMORPH_JETS(TaylorJets)
 ANAMORPH_JETS(BoundJets)
 #undef ANAMORPH_JETS
 void scale(const BoundJets& a, double k, BoundJets& product);
-/// sum_k c_k f^k of f less its constant part.
+/// sum_k c_k f^k of four jets f less their constant parts.
 void compose_with(const Four<double>* c, const TaylorJets& f, TaylorJets& sum);
 void compose_with(const Four<Interval>* c, const BoundJets& f, BoundJets& sum);
 
@@ -197,7 +197,7 @@ inline Four<double> sum(const Four<double>& a, const Four<double>& b) {
     for (int i = 0; i < kJets; ++i) r.v[i] = a.v[i] + b.v[i];
     return r;
 }
-/// As for Interval.
+/// The sum of four intervals, rounded as that of Interval is.
 inline Four<Interval> sum(const Four<Interval>& a, const Four<Interval>& b) {
     using interval_detail::kUlp;
     Four<Interval> r;
@@ -283,7 +283,8 @@ auto is_negative(const Jets<T, N>& a) {
     for (int i = 0; i < kJets; ++i) r.of[i] = is_negative(a.c[0][i]);
     return r;
 }
-/// Of the larger degree, whichever is chosen: no box depends on its neighbours.
+/// Selects jet by jet. The result has the larger degree, whichever is chosen: no box depends on its
+/// neighbours.
 template <class Condition, class T, int N>
 [[gnu::noinline]] Jets<T, N> select(const FourConditions<Condition>& where, const Jets<T, N>& a,
                                     const Jets<T, N>& b) {
@@ -310,7 +311,7 @@ Jets<T, N> without_hair(const Jets<T, N>& a) {
     for (int i = 0; i < kJets; ++i) r.c[0].set(i, without_hair(a.c[0][i]));
     return r;
 }
-/// A factor for each.
+/// A factor for each of four jets.
 struct FourFactors {
     double of[kJets];
 };

@@ -25,8 +25,9 @@ template <class T>
 struct ToldDegree {
     int degree = 99;  // none is that high: not told
 };
-// Those of intervals would take minutes to compile, and are hardly faster unrolled; with sanitizers so would all. The scalar
-// set is for x86 processors without SSE4, and measured no slower without.
+// The number of steps of recurrences, a constant where they are unrolled. Those of intervals would take
+// minutes to compile, and are hardly faster unrolled; with sanitizers so would all. The scalar set is for x86
+// processors without SSE4, and measured no slower without.
 #if defined(ANAMORPH_SANITIZED) || HWY_TARGET == HWY_SCALAR
 template <class T, int N>
 constexpr int kJetSteps = N;

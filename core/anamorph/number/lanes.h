@@ -76,7 +76,7 @@ struct Lanes {
     }
 };
 
-/// c[0] + c[1] x + ..., by Horner's rule.
+/// The polynomial c[0] + c[1] x + ..., by Horner's rule.
 template <class D, std::size_t N>
 HWY_INLINE Lanes<D> polynomial(const Lanes<D>& x, const double (&c)[N]) {
     Lanes<D> sum(c[N - 1]);
@@ -106,14 +106,14 @@ HWY_INLINE WholeLanes<D> nearest_integer(const Lanes<D>& a, Lanes<D>& rounded) {
     return hn::Sub(hn::BitCast(hn::RebindToSigned<D>(), shifted.v), shift_bits<D>());
 }
 
-/// An integer as small, as a number.
+/// Integers in lanes as numbers; they have to be as small as those of nearest_integer().
 template <class D>
 HWY_INLINE Lanes<D> number_of(const WholeLanes<D>& n) {
     return Lanes<D>(hn::BitCast(D(), hn::Add(n, shift_bits<D>()))) - Lanes<D>(kIntegerShift<D>);
 }
 
-/// a 2^n for n from -2044 to 2046 (double), -252 to 254 (float), in two steps, of which neither leaves the
-/// range.
+/// The product a 2^n for n from -2044 to 2046 (double), -252 to 254 (float), in two steps, of which neither
+/// leaves the range.
 template <class D>
 HWY_INLINE Lanes<D> times_power_of_two(const Lanes<D>& a, const WholeLanes<D>& n) {
     const hn::RebindToUnsigned<D> du;
@@ -237,8 +237,8 @@ HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
     return L(hn::CopySign(angle.v, y.v));
 }
 
-/// With a = n log 2 + r: e^r = 1 + r + r c / (2 - c), c = r - r^2 P(r^2) (fdlibm's e_exp), times 2^n in two
-/// steps, so that neither leaves the range.
+/// e^a: with a = n log 2 + r, e^r = 1 + r + r c / (2 - c), c = r - r^2 P(r^2) (fdlibm's e_exp), times 2^n in
+/// two steps, so that neither leaves the range.
 template <class D>
 HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
     using L = Lanes<D>;
@@ -258,8 +258,8 @@ HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
     return times_power_of_two(value, whole);
 }
 
-/// With a = 2^n m, m around 1, f = m - 1 and s = f / (2 + f): log m = f - s (f - R(s^2)) and so on (fdlibm's
-/// e_log). -inf at 0, NaN below.
+/// log a: with a = 2^n m, m around 1, f = m - 1 and s = f / (2 + f), log m = f - s (f - R(s^2)) and so on
+/// (fdlibm's e_log). -inf at 0, NaN below.
 template <class D>
 HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
     using L = Lanes<D>;
@@ -292,14 +292,15 @@ HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
     return select(a < infinite, ended, a);
 }
 
-/// log(1 + a) for a >= 0: what rounding takes from 1 + a = w is made good by a / (w - 1) (Kahan).
+/// The logarithm log(1 + a) for a >= 0: what rounding takes from 1 + a = w is made good by a / (w - 1)
+/// (Kahan).
 template <class D>
 HWY_INLINE Lanes<D> log_of_one_more(const Lanes<D>& a) {
     using L = Lanes<D>;
     const L w = a + L(1), rest = w - L(1);
     return select(is_zero(rest), a, log(w) * (a / select(is_zero(rest), L(1), rest)));
 }
-/// e^a - 1 for a <= 0, likewise.
+/// The difference e^a - 1 for a <= 0: what rounding takes from e^a = w is made good by a / log w (Kahan).
 template <class D>
 HWY_INLINE Lanes<D> exp_less_one(const Lanes<D>& a) {
     using L = Lanes<D>;
@@ -309,7 +310,8 @@ HWY_INLINE Lanes<D> exp_less_one(const Lanes<D>& a) {
     return select(is_zero(rest), a, select(a < L(-30), rest, value));
 }
 
-/// log(1 + b + b^2 / (1 + sqrt(1 + b^2))) for b = |a|; beyond 2^30 the 1 is lost, and squares would overflow.
+/// asinh |a| as log(1 + b + b^2 / (1 + sqrt(1 + b^2))) for b = |a|; beyond 2^30 the 1 is lost, and squares
+/// would overflow.
 template <class D>
 HWY_INLINE Lanes<D> asinh(const Lanes<D>& a) {
     using L = Lanes<D>;
@@ -321,7 +323,8 @@ HWY_INLINE Lanes<D> asinh(const Lanes<D>& a) {
     return L(hn::CopySign(value.v, a.v));
 }
 
-/// With m = e^-2|a| - 1: tanh |a| = -m / (m + 2), and 1 / cosh(a) = 2 e^-|a| / (m + 2).
+/// tanh a in s, and 1 / cosh a: with m = e^-2|a| - 1, tanh |a| = -m / (m + 2) and 1 / cosh a = 2 e^-|a| /
+/// (m + 2).
 template <class D>
 HWY_INLINE Lanes<D> scaled_sinh(const Lanes<D>& a, Lanes<D>& s) {
     using L = Lanes<D>;

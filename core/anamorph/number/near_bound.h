@@ -18,7 +18,7 @@ struct Heading;  // chart/projection/facts.h
 #ifdef ANAMORPH_SANITIZED
 #define ANAMORPH_INLINE inline
 #else
-// As calls, operations would take twice as long.
+// Inlines an operation: as calls, operations would take twice as long.
 #define ANAMORPH_INLINE __attribute__((always_inline)) inline
 #endif
 #include "anamorph/number/near.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What vectors read bases with (number/read_bases.h), once for all instruction sets.
+// The state that vectors read bases with (number/read_bases.h), once for all instruction sets.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace anamorph::simd {
 /// at known places. (By the usual model plugins would call a function for each.)
 static thread_local const void* t_next __attribute__((tls_model("initial-exec"))) = nullptr;
 
-/// The order in which they are read, or nothing: blocks are drawn without keeping it, which takes longer than the drawing.
+/// The order in which bases are read, or nothing: blocks are drawn without keeping it, which takes longer
+/// than the drawing.
 template <class Order>
 static thread_local Order t_order;
 

@@ -22,7 +22,7 @@ struct ReadBase {
     using Decision = ReadDecision<Order>;
 
     Real value = 0;
-    Number number = 0;  ///< as WrittenBase has it
+    Number number = 0;  ///< as in WrittenBase
 
     ReadBase() = default;
     HWY_INLINE ReadBase(double k) : value(static_cast<Real>(k)) {}  // NOLINT: a number is a constant
@@ -94,7 +94,7 @@ struct ReadBase {
     }
 };
 
-/// Angles beyond those that are small: few blocks read one.
+/// The angle of any point, beyond the small angles: few blocks read one.
 template <class Real>
 HWY_NOINLINE __attribute__((const)) L<Real> AnyAngle(L<Real> y, L<Real> x) {
     return atan2(y, x);

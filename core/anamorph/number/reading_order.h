@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// In which order the bases of a formula come (number/near.h): a checksum that differs wherever two orders do.
+// The order in which the bases of a formula come (number/near.h), as a checksum that differs wherever two
+// orders do.
 #pragma once
 
 #include <bit>

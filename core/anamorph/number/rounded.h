@@ -300,7 +300,7 @@ template <class Real>
 bool is_zero(const Rounded<Real>& a) {
     return a.is_zero();
 }
-/// The least of all exact and all computed values.
+/// The lower end of all exact and all computed values.
 template <class Real>
 double lower_end(const Rounded<Real>& a) {
     return a.range.lo - a.radius - a.error;
@@ -326,7 +326,7 @@ inline double larger(double a, double b) {
 }
 }  // namespace rounded_detail
 
-/// One of two numbers, which are the same where rounding decides between them.
+/// Holds one of two numbers, which are the same where rounding decides between them.
 template <class Real>
 Rounded<Real> hull(const Rounded<Real>& a, const Rounded<Real>& b) {
     return {hull(a.range, b.range), rounded_detail::larger(a.radius, b.radius),

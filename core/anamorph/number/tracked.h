@@ -26,7 +26,7 @@ struct Tracked {
     constexpr Tracked(T computed, double bound) : value(computed), error(bound) {}
 
     double size() const { return static_cast<double>(std::fabs(value)); }
-    /// As double, with its rounding.
+    /// The number in double, with its rounding.
     Tracked<double> in_double() const {
         const auto v = static_cast<double>(value);
         return {v, (error + 0x1p-53 * std::fabs(v)) * (1 + 0x1p-48)};
@@ -48,7 +48,7 @@ struct Tracked {
         return result(a.value * b.value, a.size() * b.error + a.error * (b.size() + b.error));
     }
     Tracked& operator+=(const Tracked& b) { return *this = *this + b; }
-    /// Infinite bound where the divisor may be 0.
+    /// The quotient; its bound is infinite where the divisor may be 0.
     friend Tracked operator/(const Tracked& a, const Tracked& b) {
         const T q = a.value / b.value;
         const double least = b.size() - b.error;

@@ -205,7 +205,8 @@ surface::DrapeOptions options_of(const ParameterValues& values) {
     return options;
 }
 
-/// Of scheme hardware, which draws the bare picture. What is said of a machine is checked with the other schemes too.
+/// The machine of scheme hardware, which draws the bare picture. What is said of a machine is checked with
+/// the other schemes too.
 std::optional<machine::BlockMachine> machine_of(const ParameterValues& values,
                                                 const surface::DrapeOptions& options) {
     const machine::BlockMachine machine = values.given("machine")
@@ -277,7 +278,7 @@ class DrapeRequest {
     surface::Camera camera(const ParameterValues& values, const Size& screen) const {
         return {pose_of(values, aspect()), matrix_of(values), vector_of(values, "move"), screen};
     }
-    /// Of scheme hardware.
+    /// The machine of scheme hardware.
     std::optional<machine::BlockMachine> machine(const ParameterValues& values) const {
         return machine_of(values, options(values));
     }

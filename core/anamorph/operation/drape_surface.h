@@ -13,27 +13,27 @@
 
 namespace anamorph {
 
-/// The rows of a surface, but for how it is turned and moved.
+/// The rows of a surface, without those by which it is turned and moved.
 ParameterTable drape_surface_rows();
 
-/// What an operation's files say of a surface, read once for all its frames.
+/// The surfaces that an operation's files and values describe; the files are read once for all frames.
 class DrapeSurfaces {
   public:
-    /// `aspect`: width over height of the picture. Throws Error.
+    /// Reads the files. `aspect`: width over height of the picture. Throws Error.
     DrapeSurfaces(const OperationInput& input, double aspect);
 
-    /// What in the files is no number, in words; empty where there is nothing.
+    /// Says what in the files is no number; empty where all are numbers.
     const std::string& missing() const { return m_missing; }
     /// The surface of a frame's values, in which `frame` is the frame. Throws Error.
     surface::SurfaceSum sum_of(const ParameterValues& values) const;
-    /// Its patches, which frames share as long as the surface stays.
+    /// The patches of a surface, which frames share as long as the surface stays.
     std::shared_ptr<surface::SharedTree> tree_of(const surface::SurfaceSum& sum) const;
 
   private:
     struct Kept {
         std::mutex mutex;
         std::vector<std::pair<surface::SurfaceSum, std::shared_ptr<surface::SharedTree>>>
-            trees;  ///< the last one first
+            trees;  ///< the latest one first
     };
 
     SpaceFormula formula_of(const ParameterValues& values) const;

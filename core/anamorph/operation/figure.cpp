@@ -24,7 +24,7 @@ constexpr int kDefaultSide = 1000;
 constexpr int kMostFrameNumber = 1'000'000;
 // A host that asks how many subimages there are looks at each.
 constexpr int kMostSubimages = 100'000;
-// Of the angles and places that users set.
+// The largest angles and places that users set.
 constexpr double kFar = 1e9;
 // Chords of outlines, in pixels.
 constexpr double kChordError = 0.02;
@@ -137,7 +137,7 @@ ParameterTable figure_view_rows() {
     };
 }
 
-/// Of lines and textures.
+/// The rows of lines and textures.
 ParameterTable line_rows() {
     using namespace rows;
     return {
@@ -265,7 +265,7 @@ class Film {
         const std::lock_guard lock(*m_mutex);
         return std::max(1, m_motion->frame_count());
     }
-    /// Those of the file, in one line.
+    /// The warnings of the file, in one line.
     const std::string& warnings() const { return m_warnings; }
     /// The number of the i-th of these.
     int number(int i) const {

@@ -19,8 +19,8 @@ struct MipTexture {
     std::optional<Size> size;
 };
 
-/// A picture of one channel for each texture, twice as large either way; of one that is missing 2 x 2 black
-/// pixels. The textures are the first sources that are drawn.
+/// Makes a picture of one channel for each texture, twice as large either way; of one that is missing 2 x 2
+/// black pixels. The textures are the first sources that are drawn.
 std::unique_ptr<const Pictures> mip_pictures(std::vector<MipTexture> textures, const Attributes& says);
 
 }  // namespace anamorph

@@ -22,27 +22,28 @@ struct FlatRequest {
     Filter filter;
     Wrap wrap;
     Output output;
-    std::shared_ptr<const Attributes> says = {};  ///< besides the tolerance, if it says more
-    std::optional<Box> display = {};              ///< of the target, where that is more than it
+    std::shared_ptr<const Attributes> says = {};  ///< attributes besides the tolerance, if there are any
+    std::optional<Box> display = {};              ///< the display window, where the target is another
 
     Size source_size() const { return {source.width(), source.height()}; }
 };
 
-/// What a request says that says one thing.
+/// The attributes of a request that has a single one.
 std::shared_ptr<const Attributes> saying(Attribute attribute);
 
-/// From a flat picture, with what rows of the table say: filter, wrap, output, scheme and tol.
+/// A request for a picture made from a flat one, with what rows of the table say: filter, wrap, output,
+/// scheme and tol.
 FlatRequest flat_request(const ParameterValues& values, const SourceFacts& source, const Size& target);
 
-/// The map, and what it says of its picture beyond what every picture reached.
+/// A map, and what it says of its picture beyond what every picture reached.
 struct FlatMap {
     std::shared_ptr<const BlockMap> blocks;
     std::function<Attributes(const ParallelFor& parallel_for)> says = {};
 };
-/// That of a picture of so many pixels.
+/// A function that makes the map for a picture of so many pixels.
 using MakeFlatMap = std::function<FlatMap(const Size& pixels)>;
 
-/// Of a map's pixels, those that have no point of their own, wherever the source ends.
+/// The fraction of a map's pixels that have no point of their own, wherever the source ends.
 template <class Map>
 double undefined_fraction(const Map& map, const ParallelFor& parallel_for) {
     constexpr int kRows = 128;
@@ -54,7 +55,7 @@ double undefined_fraction(const Map& map, const ParallelFor& parallel_for) {
     });
     return static_cast<double>(count) / (static_cast<double>(size.width) * size.height);
 }
-/// A map that says how many these are.
+/// The map of a plan, whose picture says undefined_fraction().
 template <class Plan>
 FlatMap with_undefined_fraction(std::shared_ptr<const Plan> plan) {
     return {

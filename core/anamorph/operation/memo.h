@@ -10,7 +10,8 @@
 
 namespace anamorph {
 
-/// Thread safe. Values live as long as someone uses them; the memo itself keeps the last `capacity`.
+/// Keeps values by their keys. Thread safe. Values live as long as someone uses them; the memo itself keeps
+/// the last `capacity`.
 template <class Value>
 class Memo {
   public:

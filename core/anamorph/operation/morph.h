@@ -21,16 +21,16 @@ struct MorphRequest {
     std::vector<Size> pictures;
     int width = 0, height = 0;
     MorphOptions options;
-    std::optional<double> pin_border;  ///< unless as the features say
+    std::optional<double> pin_border;  ///< otherwise as the features say
     int frames = 1;
 
-    /// Of a film: t runs evenly from 0 in the first frame to 1 in the last; t_color does too unless it was
-    /// given.
+    /// The options of a frame of a film: t runs evenly from 0 in the first frame to 1 in the last; t_color
+    /// does too unless it was given.
     MorphOptions frame_options(int frame) const;
 };
 
-/// Reads a table's values. Without `size` the picture has that of the first; with one number, its shape.
-/// Throws Error.
+/// Reads a request from a table's values. Without `size` the picture has that of the first; with one number,
+/// its shape. Throws Error.
 MorphRequest read_morph_request(const ParameterValues& values, const std::vector<Size>& pictures);
 
 }  // namespace anamorph

@@ -19,7 +19,7 @@ using rows::chosen;
 
 const char* const kDistortion = "distortion";
 
-/// Those whose rows are a full turn.
+/// The projections whose rows are a full turn.
 std::vector<std::string> turning_projections() {
     std::vector<std::string> names;
     for (const Projection p : kProjections)

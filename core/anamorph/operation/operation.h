@@ -27,11 +27,11 @@
 
 namespace anamorph {
 
-/// What is known of a source before a pixel is read.
+/// The facts of a source that are known before a pixel is read.
 struct SourceFacts {
     int width = 0, height = 0;
-    /// What the image says of itself, if it does, where it says so, and its horizontal field of view in
-    /// degrees, and its lens.
+    /// The projection that the image says it has, if it does, where it says so, its horizontal field of view
+    /// in degrees, and its lens.
     std::optional<Projection> projection = {};
     std::string said_by = {};
     std::optional<double> fov = {};
@@ -57,13 +57,13 @@ struct SourceImage {
 class SolvedPicture {
   public:
     virtual ~SolvedPicture() = default;
-    /// What was reached over the whole picture.
+    /// The attributes that tell what was reached over the whole picture.
     virtual Attributes reached(const ParallelFor& parallel_for) const = 0;
     /// Does reached() compute every pixel, so that it takes as long as drawing all of them? Hosts that open a picture to
     /// read a part of it go without.
     virtual bool reached_by_drawing() const { return false; }
-    /// Fills `view` with the pixels of `box`; sources are read for colour only. After those given come linked
-    /// images, null where one is missing. False when a source could not be read.
+    /// Fills `view` with the pixels of `box`; sources are read for colour only. The sources are followed by
+    /// linked images, null where one is missing. False when a source could not be read.
     virtual bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
                       const ParallelFor& parallel_for) const = 0;
 };
@@ -78,8 +78,8 @@ struct PictureRequest {
     /// The display window, in pixels of the picture, which is then the data window; where there is none they are the same.
     std::optional<Box> display = {};
     PixelKind pixels = PixelKind::color;
-    std::vector<std::string> channels;  ///< of colour that no source says the channels of: as float
-    Attributes says;                    ///< known beforehand: "anamorph:tol", the projection
+    std::vector<std::string> channels;  ///< names of the channels of colour that no source says: as float
+    Attributes says;                    ///< attributes known beforehand: "anamorph:tol", the projection
     /// The source whose pixels the picture shows as they are, moved and never computed with: a host may have it move what
     /// the core has no numbers for.
     std::optional<std::size_t> moves = {};
@@ -109,7 +109,7 @@ class Pictures {
 /// All that an operation is given.
 struct OperationInput {
     const ParameterValues& values;
-    const std::vector<SourceImage>& sources;  ///< those given, in the order of their keys
+    const std::vector<SourceImage>& sources;  ///< the sources that are given, in the order of their keys
     const SideFiles& files;
     const SideFileReader& reader;
     std::vector<std::string> missing = {};  ///< keys of linked images that cannot be opened
@@ -123,29 +123,29 @@ struct Example {
 
 /// A file that is known of once others are read.
 struct LinkedFile {
-    std::string key;  ///< under which it is among the side files; not the name of a parameter
+    std::string key;  ///< key among the side files; not the name of a parameter
     std::string name;
-    bool image = false;  ///< it is drawn: the picture's sources go on with it
+    bool image = false;  ///< is it drawn? The picture's sources go on with it
 };
 /// Linked files, in the order in which they are named.
 using LinkedFiles = std::vector<LinkedFile>;
 
 /// An entry of the registry.
 struct Operation {
-    std::string name;                  ///< of its recipes: "pano"
-    std::string title;                 ///< what it draws, in a few words
+    std::string name;                  ///< name of its recipes: "pano"
+    std::string title;                 ///< the picture it draws, in a few words
     const ParameterTable* parameters;  ///< keys of type image and file are its sources and side files
     std::vector<std::string> sources;  ///< keys of the images it draws; may be none
     std::size_t least_sources;
     Example example;  ///< for sources of any kind that are as large
-    /// What read() calls.
+    /// The function that read() calls.
     std::unique_ptr<const Pictures> (*make)(const OperationInput& input);
 
     /// The key of the side file that is by default the recipe's name without its ending; may be none.
     std::string main_file = {};
     /// The endings of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
     std::vector<std::string> endings = {};
-    /// The files that these name; the picture changes with them. May be null. Throws Error.
+    /// Finds the files that the side files name; the picture changes with them. May be null. Throws Error.
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
                           const SideFileReader& reader) = nullptr;
 
@@ -157,22 +157,23 @@ struct Operation {
 /// All operations, in the order of list.h.
 const std::vector<const Operation*>& operations();
 
-/// The operation of that name; null where there is none.
+/// The operation that has a name; null where there is none.
 const Operation* find_operation(std::string_view name);
 
 /// The names of all operations, "pano, warp, morph", for messages.
 std::string operation_names();
 
-/// A text made of all that `read` is given: the same text, the same pictures. The sources' pixels are none of it.
+/// A text made of all that `read` is given: where it is the same, pictures are. The sources' pixels are none
+/// of it.
 std::string operation_key(const Operation& operation, const ParameterValues& values,
                           const std::vector<SourceImage>& sources, const SideFiles& files);
 
-/// What is mixed with colours of `first` has to be in their colour space, unless another is asked for. `name`: of the
-/// image, for messages. Throws Error.
+/// Checks that what is mixed with colours of `first` is in their colour space, unless another is asked for.
+/// `name`: of the image, for messages. Throws Error.
 void check_color_space(const SourceImage& image, const std::string& name, const SourceImage& first,
                        const std::string& first_name, const ParameterValues& values);
 
-/// Half the pixels each way, `level` times, rounded down, at least 1; none past the level of one pixel.
+/// A size halved each way, `level` times, rounded down, at least 1; none past the level of one pixel.
 std::optional<Size> level_size(const Size& size, int level);
 /// The display window of a level, to the nearest pixel, of at least one.
 std::optional<Box> level_display(const std::optional<Box>& display, int level);

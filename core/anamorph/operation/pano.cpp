@@ -164,7 +164,8 @@ struct TakenFieldOfView {
     std::string reason;  ///< where it goes without saying, nothing
 };
 
-/// Of the source: what was asked for or what it says of itself, else by its camera's focal length, else the projection's.
+/// The field of view of the source: what was asked for or what it says of itself, else by its camera's focal
+/// length, else the projection's.
 TakenFieldOfView source_field_of_view(const ParameterValues& values, const SourceFacts& facts,
                                       Projection projection, PixelSpacing spacing) {
     if (values.given("srcfov")) return {values.number("srcfov"), ""};
@@ -184,7 +185,7 @@ LensModel lens_of(const ParameterValues& values, const std::string& name) {
     return values.given(name) ? LensModel::parse(values.text(name), name) : LensModel{};
 }
 
-/// Of scheme hardware. What is said of a machine is checked with the other schemes too.
+/// The machine of scheme hardware. What is said of a machine is checked with the other schemes too.
 std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
     const machine::BumpUnit unit =
         values.given("machine") ? machine::bump_unit_from_text(values.text("machine")) : machine::BumpUnit{};

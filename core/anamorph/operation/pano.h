@@ -37,7 +37,8 @@ struct ReprojectRequest {
     Panorama map() const { return Panorama(source.chart, target, orientation, held); }
 };
 
-/// Reads a table's values. Throws Error; it names `from` when the source does not say what it is.
+/// Reads a request from a table's values. Throws Error; it names `from` when the source does not say what it
+/// is.
 ///
 /// Without `from`: what the image says, else 2:1 is equirectangular and 1:6 a cubemap. Without `srcfov`: what
 /// the image says, where that is of the same projection, else, of a rectilinear one, what follows from its camera's
@@ -48,8 +49,9 @@ struct ReprojectRequest {
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& source);
 inline constexpr int kMaxDefaultSize = 16384;
 
-/// Parts of it, for tables with some of these rows: the source, how it was held, the picture (to, fov, d, lens, size), where its
-/// camera looks (yaw, pitch, roll), and all options (tol, filter, wrap, output) but the scheme. Throw Error.
+/// Read parts of a request, for tables with some of its rows: the source, how it was held, the picture (to,
+/// fov, d, lens, size), where its camera looks (yaw, pitch, roll), and all options (tol, filter, wrap,
+/// output) but the scheme. Throw Error.
 TakenSource read_source(const ParameterValues& values, const SourceFacts& source);
 Orientation read_held(const ParameterValues& values);
 Chart read_target_chart(const ParameterValues& values, const Chart& source);

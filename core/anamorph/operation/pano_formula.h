@@ -11,12 +11,13 @@ namespace anamorph {
 
 /// A row of projections, and of "formula".
 Parameter projection_or_formula(const char* name, const std::string& doc);
-/// The rows of what the formula is.
+/// The rows of a formula: its expressions and definitions.
 ParameterTable ray_rows();
 
-/// Is the picture's projection the formula's? Throws Error if not, and one is given.
+/// Is the picture's projection the formula's? Throws Error if it is not, and a formula is given.
 bool has_formula(const ParameterValues& values);
-/// The pictures where it is. Throws Error of what the formula has not, such as a field of view.
+/// The pictures of a projection that is a formula. Throws Error of what the formula has not, such as a field
+/// of view.
 std::unique_ptr<const Pictures> pictures_of_formula(const ParameterValues& values, const SourceFacts& facts);
 
 }  // namespace anamorph

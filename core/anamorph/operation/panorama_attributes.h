@@ -6,12 +6,12 @@
 
 namespace anamorph {
 
-/// Of any projection, "fisheye fov=180": the projection, its horizontal field of view in degrees and its lens. Without
-/// a colon: OpenImageIO takes what stands before one for the name of a format.
+/// The attribute of any projection, "fisheye fov=180": the projection, its horizontal field of view in
+/// degrees and its lens. Without a colon: OpenImageIO takes what stands before one for the name of a format.
 inline constexpr const char* kPanoramaProjection = "panoramaProjection";
 
-/// That attribute; and where there is one, what others read: GPano's, OpenEXR's and OpenImageIO's names of
-/// an environment. Only a picture of colour is an environment to others.
+/// The attribute kPanoramaProjection; and where there is one, what others read: GPano's, OpenEXR's and
+/// OpenImageIO's names of an environment. Only a picture of colour is an environment to others.
 Attributes panorama_attributes(const Chart& picture, bool color);
 
 }  // namespace anamorph

@@ -11,8 +11,8 @@
 
 namespace anamorph {
 
-/// What make() reads of a file. What has an identity is kept for the next who asks for the same; `how` tells
-/// readings of one file apart.
+/// The value that make() reads of a file. That of a file that has an identity is kept for the next who asks
+/// for the same; `how` tells readings of one file apart.
 template <class Value, class Make>
 std::shared_ptr<const Value> read_once(const SideFile& file, const std::string& how, const Make& make) {
     constexpr std::size_t kKept = 4;

@@ -46,7 +46,7 @@ Parameter whole(const char* name, const char* unit, std::string value, int least
 Parameter toggle(const char* name, const char* value, const std::string& doc);
 Parameter numbers(const char* name, double least, const std::string& doc);
 Parameter text(const char* name, const std::string& doc);
-/// A text for which other keys define names.
+/// A row of type text for which other keys define names.
 Parameter definitions(const char* name, const std::string& doc);
 Parameter image(const char* name, const std::string& doc);
 Parameter file(const char* name, const std::string& doc);
@@ -57,13 +57,14 @@ Parameter mip();
 Parameter tol();
 Parameter colorspace(const std::string& doc);
 
-/// The filters that all operations share, then the operation's own.
+/// The row of filters: those that all operations share, then the operation's own.
 Parameter filter(const std::vector<Word>& own = {});
-/// `automatic`: what that is here, "is black".
+/// The row `wrap`. `automatic`: what that is here, "is black".
 Parameter wrap(const std::string& automatic);
-/// The words auto, exact, blocks, residual, direct and hardware mean the same everywhere and need no meaning here.
+/// The row of schemes. The words auto, exact, blocks, residual, direct and hardware mean the same everywhere
+/// and need no meaning here.
 Parameter scheme(const std::vector<Word>& words);
-/// The words that all operations share, then the operation's own.
+/// The row of outputs: the words that all operations share, then the operation's own.
 Parameter output(const std::vector<Word>& own = {});
 /// `more`: what else than the output it is of.
 Parameter flip_v(const std::string& more = "");
@@ -72,7 +73,7 @@ Parameter flip_v(const std::string& more = "");
 /// given.
 Size size_of(const ParameterValues& values, const Size& natural);
 
-/// A row of numbers that must be three, each from `least` to `most`. Throws Error.
+/// The three numbers of a row, each from `least` to `most`. Throws Error where there are not three such.
 glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, double least, double most);
 
 /// The enumerator of the word that a row has.

@@ -13,7 +13,7 @@ namespace anamorph {
 /// The program that `program` names; none where it is not given. Throws Error naming the line.
 std::optional<machine::ShaderProgram> read_shader(const OperationInput& input);
 
-/// Of a request with a machine. Throws Error.
+/// The picture of a request with a machine. Throws Error.
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request);
 
 }  // namespace anamorph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What operations that draw a Picture share.
+// The steps that operations that draw a Picture share.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace anamorph {
 
-/// What the channels of a picture hold that shows this.
+/// The kind of pixels of a picture that shows this output.
 PixelKind pixels_of(Output output);
 
 /// A picture as an operation hands it to a host: it says anamorph:max_error, anamorph:exact_fraction, and what it says itself.

@@ -58,7 +58,7 @@ ParameterTable make_warp_table() {
     };
 }
 
-/// Of scheme hardware. What is said of a machine is checked with the other schemes too.
+/// The unit of scheme hardware. What is said of a machine is checked with the other schemes too.
 std::optional<machine::ShaderUnit> shader_of(const ParameterValues& values) {
     const machine::ShaderUnit unit = values.given("machine")
                                          ? machine::shader_unit_from_text(values.text("machine"))

@@ -16,24 +16,24 @@ const Operation& warp_operation();
 /// A warp as asked for, but for the mesh itself.
 struct WarpRequest {
     Size source, target;
-    std::optional<Box> display = {};  ///< of the target, where that is more, or less, than it
+    std::optional<Box> display = {};  ///< the display window, where the target is another
     MeshWarpOptions options;
-    int step = 1;                        ///< of an ST-map: every step-th pixel is a vertex
-    std::optional<Direction> direction;  ///< unless as the mesh says
-    /// Of scheme hardware: what draws it, in place of options.scheme and tol.
+    int step = 1;                        ///< step of an ST-map: every step-th pixel is a vertex
+    std::optional<Direction> direction;  ///< otherwise as the mesh says
+    /// The unit that draws a warp of scheme hardware, in place of options.scheme and tol.
     std::optional<machine::ShaderUnit> machine = {};
-    std::optional<machine::ShaderProgram> program = {};  ///< of the user's, in place of ours
+    std::optional<machine::ShaderProgram> program = {};  ///< the user's program, in place of ours
 };
 
-/// Reads a table's values. Without `size` the picture has the source's; with one number, the source's shape.
-/// Throws Error.
+/// Reads a request from a table's values. Without `size` the picture has the source's; with one number, the
+/// source's shape. Throws Error.
 WarpRequest read_warp_request(const ParameterValues& values, const Size& source);
 
 /// The picture's size, as read_warp_request has it, where `natural` stands in for the source's.
 Size warp_target(const ParameterValues& values, const Size& natural);
 
-/// The same warp with every position in fractions of its image: for pictures of another size than the one
-/// that positions in pixels are given for.
+/// A warp with every position in fractions of its image: for pictures of another size than the one that
+/// positions in pixels are given for.
 WarpMap in_fractions(const WarpMap& map, const Size& source, const Size& target);
 
 }  // namespace anamorph

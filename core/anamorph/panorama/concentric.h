@@ -116,7 +116,8 @@ class ConcentricMap {
         return {r.x * k, r.y * k, r.z * k};
     }
 
-    /// No ray of a slit for this one is flatter, by half. What does not see that sees none, up to where there is no azimuth.
+    /// A ray such that no ray of a slit for this one is flatter, by half: what does not see it sees none of
+    /// them, up to where there is no azimuth.
     template <class T>
     Ray<T> flattest(const Ray<T>& ray) const {
         return {ray.x, ray.y * m_least_height, ray.z};
@@ -133,7 +134,8 @@ class ConcentricMap {
         return {s.along.x * cos + s.along.z * sin, s.along.y * (root - s.ahead * m_per_depth) * per_root,
                 s.along.z * cos - s.along.x * sin};
     }
-    /// The same with the stack's viewpoint; straight up and down, where there is no horizontal direction, the ray itself.
+    /// The ray of the circle's slit for the stack's viewpoint; straight up and down, where there is no
+    /// horizontal direction, the ray itself.
     template <class T>
     Ray<T> slit_or_pole(const Ray<T>& ray) const {
         if (ray.x == T(0) && ray.z == T(0)) return ray;
@@ -151,7 +153,7 @@ class ConcentricMap {
     bool m_whole;
     /// Half of 1 - |viewpoint| / depth: the way from the viewpoint to what is seen is no shorter, over that from the slit.
     double m_least_height;
-    double m_per_depth;  ///< 1 / depth; the double that it is
+    double m_per_depth;  ///< 1 / depth, in double
     /// radius / depth, the root of 1 less its square, and 1 over that.
     Constant m_slit, m_slit_root, m_per_root;
 };

@@ -29,7 +29,7 @@ class Sights {
     std::vector<Box> m_pieces;
 };
 
-/// Of one circle, pixel by pixel.
+/// The weights of one circle, pixel by pixel.
 auto weights_of(const Panorama& view, const ConcentricStack& stack, int circle) {
     return [sights = Sights(view), stack, circle](const Box& box, float* weights) {
         bool any = false;

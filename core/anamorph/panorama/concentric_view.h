@@ -11,12 +11,14 @@
 
 namespace anamorph {
 
-/// A view, whose source i is the panorama of circle i. `view`: as ConcentricMap takes it. `circle`: one panorama alone, in place of
-/// the mixture; stmap shows the middle one unless this is given. Throws Error.
+/// The picture of a view, whose source i is the panorama of circle i. `view`: as ConcentricMap takes it.
+/// `circle`: one panorama alone, in place of the mixture; stmap shows the middle one unless this is given.
+/// Throws Error.
 Picture mosaic_picture(const Panorama& view, const ConcentricStack& stack, const ReprojectOptions& options,
                        std::optional<int> circle = {});
 
-/// What ConcentricStack::vertical_distortion() says at each pixel of a view, of things `nearest` or farther from the centre.
+/// The number that ConcentricStack::vertical_distortion() gives at each pixel of a view, of things `nearest`
+/// or farther from the centre.
 std::function<float(double x, double y)> distortion_of(const Panorama& view, const ConcentricStack& stack,
                                                        double nearest);
 

@@ -50,7 +50,7 @@ using L = Lanes<D<Real>>;
 template <class Real, class Order>
 using N = Near<ReadBase<Real, Order>, L<Real>>;
 
-/// As in chart/lens.h.
+/// shrink() as in chart/lens.h, read from its bases.
 template <class Real, class Order>
 HWY_INLINE N<Real, Order> shrink(const LensTerms&, const N<Real, Order>& value) {
     ReadBase<Real, Order> bases[ComputedSeries::kDegree + 1];
@@ -72,7 +72,7 @@ struct Rays {
     HWY_ALIGN Real rest_x[Block::kMaxSide], rest_y[Block::kMaxSide], rest_z[Block::kMaxSide];
 };
 
-/// As transform() in geometry/point.h.
+/// The transformed ray, as transform() in geometry/point.h computes it.
 template <class Number>
 HWY_INLINE Ray<Number> Transformed(const glm::dmat3& m, const Ray<Number>& ray) {
     const auto row = [&](int i)

@@ -49,10 +49,11 @@ class FormulaView {
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
 
-    /// The points (x + i, y): as exact() has them, within the same bound. `piece` is -1 where there is no source point.
+    /// Finds the source points of the points (x + i, y) as exact() does, within the same bound. `piece` is -1
+    /// where there is no source point.
     void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
 
-    /// The pixels of a box that have no ray.
+    /// The number of pixels of a box that have no ray.
     std::int64_t undefined_pixels(const Box& box) const;
 
   private:
@@ -65,7 +66,7 @@ class FormulaView {
         const auto [to_x, to_y, to_z] = read_program<3>(m_rays.point, at.x, at.y);
         return {to_x, to_y, to_z};
     }
-    /// Positive where there is a ray.
+    /// A number that is positive where there is a ray.
     template <class T>
     T domain(const T& x, const T& y) const {
         if (m_rays.is_everywhere) return T(1);

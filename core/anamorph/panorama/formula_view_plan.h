@@ -13,7 +13,7 @@ class FormulaViewPlan final : public FormulaPlan<FormulaView> {
   public:
     using FormulaPlan::FormulaPlan;
 
-    /// Exact pixels by vectors.
+    /// Reads exact pixels by vectors.
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
 };
 

@@ -8,22 +8,22 @@
 
 namespace anamorph {
 
-/// A PushedMap from the globe to the picture, inverted, then Panorama from the globe on.
+/// The map by a PushedMap from the globe to the picture, inverted, and by a Panorama from the globe on.
 class InverseView {
   public:
-    /// Source points cost most, as those of PushedMap.
+    /// The costs of PushedMap, whose source points cost most here too.
     static constexpr PlanCosts kCosts = PushedMap::kCosts;
     /// The pixels of the globe, an equirectangular picture, in which directions are counted.
     static constexpr Size kGlobe{2048, 1024};
 
-    /// `points`: as parse_points() makes them. `picture`: the size that they speak of. `target`: the pixels that the picture has.
-    /// Throws Error as Panorama and PushedMap do.
+    /// `points`: as parse_directions() makes them. `picture`: the size that they speak of. `target`: the
+    /// pixels that the picture has. Throws Error as Panorama and PushedMap do.
     InverseView(const Chart& source, PlaneFormula points, const Size& picture, const Size& target,
                 const Orientation& orientation = {}, const Orientation& held = {});
 
     const Chart& source() const { return m_view.source(); }
 
-    // As a FormulaMap.
+    // The members that make this a FormulaMap (plan/formula_map.h).
     struct Local {
         PushedMap::Local globe;
         Panorama::Local view;
@@ -51,11 +51,12 @@ class InverseView {
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
 
-    /// The pixels of a box that show no direction.
+    /// The number of pixels of a box that show no direction.
     std::int64_t undefined_pixels(const Box& box) const { return m_globe.undefined_pixels(box); }
 
   private:
-    /// Of points of the globe in a box, as they are computed off by `error` at most.
+    /// Bounds the error of source points from points of the globe in a box, which are computed off by `error`
+    /// at most.
     template <class Real>
     double error_from(const Point<Interval>& at, double error) const;
 

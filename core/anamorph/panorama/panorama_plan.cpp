@@ -13,7 +13,7 @@ template class FormulaPlan<Panorama>;
 
 namespace {
 
-/// Of all blocks: no formula asks where it is read.
+/// The orders in which all blocks are read: no formula asks where it is read.
 ReadOrders read_orders(const Panorama& map) {
     if (!map.may_be_direct()) return {};
     const Size size = map.target_size();
@@ -65,7 +65,7 @@ void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const Dou
     }
 }
 
-/// Of a part of a block, counted from its corner.
+/// Reads a part of a block, counted from its corner.
 void PanoramaPlan::direct_rows(const Block& block, const Box& part, const PointRows& to) const {
     const NearBlock<Panorama::Local, float> near = near_in_float(block);
     const Point<float> middle{static_cast<float>(beside(block, near.middle.x, map().period()) - block.base_x),

@@ -14,9 +14,9 @@ class PanoramaPlan final : public FormulaPlan<Panorama> {
     using FormulaPlan::exact;
     PanoramaPlan(const Panorama& map, const PlanOptions& options);
 
-    /// Exact pixels by vectors, and direct ones in double.
+    /// Reads exact pixels by vectors, and direct ones in double.
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
-    /// Direct ones in float.
+    /// Reads direct pixels in float.
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;

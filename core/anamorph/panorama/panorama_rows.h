@@ -9,13 +9,13 @@
 
 namespace anamorph::simd {
 
-/// Pixels of a row that are computed together.
+/// The number of pixels of a row that are computed together.
 inline constexpr int kExactRow = 64;
 
 /// Source points of a row of target points. Room for kExactRow entries each.
 struct ExactRow {
     alignas(64) double x[kExactRow], y[kExactRow];  ///< source pixels
-    alignas(64) double piece[kExactRow];            ///< of the source
+    alignas(64) double piece[kExactRow];            ///< piece of the source
     alignas(64) double seen[kExactRow];             ///< 1, or 0 where there is no source point
 };
 
@@ -28,12 +28,13 @@ struct RayRow {
 /// A rotation of rays by columns.
 using Turn = std::array<std::array<Constant, 3>, 3>;
 
-/// The `count` <= kExactRow points (x + i, y) of a piece of the target. What is computed and in what order is
-/// what Panorama::exact<double> does, with functions that err less than Rounded<double> allows for: its bound
-/// holds. The same bits on all instruction sets.
+/// Finds the source points of the `count` <= kExactRow points (x + i, y) of a piece of the target. What is
+/// computed and in what order is what Panorama::exact<double> does, with functions that err less than
+/// Rounded<double> allows for: its bound holds. The same bits on all instruction sets.
 void exact_row(const Chart& target, const Chart& source, const Turn& turn, int piece, double x, double y,
                int count, ExactRow& row);
-/// The same of rays that are there, as Panorama::exact<double> finds their points when it has turned them.
+/// Finds the source points of rays that are given, as Panorama::exact<double> finds their points when it has
+/// turned them.
 void exact_points(const Chart& source, const Turn& turn, RayRow& rays, int count, ExactRow& row);
 
 }  // namespace anamorph::simd

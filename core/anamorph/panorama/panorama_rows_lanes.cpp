@@ -27,7 +27,7 @@ HWY_INLINE bool somewhere(const LaneMask<Tag>& condition) {
 using D = hn::CappedTag<double, kExactRow>;
 using L = Lanes<D>;
 
-/// As transform() in geometry/point.h.
+/// The transformed ray, as transform() in geometry/point.h computes it.
 template <class Entry>
 HWY_INLINE Ray<L> Transformed(const Entry& entry, const Ray<L>& r) {
     return {r.x * entry(0, 0) + r.y * entry(1, 0) + r.z * entry(2, 0),
@@ -52,7 +52,8 @@ Matrix MatrixOf(const glm::dmat3& axes) {
     return m;
 }
 
-/// With the lens of the target, if it has one and its projection may have one.
+/// Finds the rays of a row of target points, with the lens of the target, if it has one and its projection
+/// may have one.
 template <class Projection>
 void TargetRays(const Chart& target, const Matrix& turn, int piece, double x0, double y, int count,
                 RayRow& rays) {

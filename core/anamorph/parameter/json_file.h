@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the readers of JSON files. The library that parses them is included by parameter/json_file.cpp alone: each file that
-// includes it takes seconds more to compile.
+// JSON as its readers share it. The library that parses it is included by parameter/json_file.cpp alone: each
+// file that includes it takes seconds more to compile.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,17 @@ class Json {
     bool is_string() const;
     bool is_boolean() const;
     bool is_number() const;
-    /// A number with a point or an exponent.
+    /// Is it a number with a point or an exponent?
     bool is_float() const;
 
-    /// What it is, if it is that.
+    /// The value as a number; it has to be one. So it is with boolean() and string().
     double number() const;
     bool boolean() const;
     const std::string& string() const;
-    /// JSON of it, on one line and in ASCII: for messages.
+    /// The JSON of the value, on one line and in ASCII: for messages.
     std::string text() const;
 
-    /// How many members or entries there are.
+    /// The number of members or entries.
     std::size_t size() const;
     bool empty() const { return size() == 0; }
     /// Entry i of a list; it must be there.
@@ -53,12 +53,12 @@ class Json {
     const void* m_value;
 };
 
-/// What a file of JSON holds.
+/// The value that a file of JSON holds.
 class JsonFile {
   public:
-    /// An object without members.
+    /// Makes an object without members.
     JsonFile();
-    /// Throws Error naming the file, and the key that stands twice in an object.
+    /// Parses a text. Throws Error naming the file, and the key that stands twice in an object.
     JsonFile(std::string_view text, std::string_view file);
 
     Json top() const { return Json(m_top.get()); }

@@ -23,14 +23,14 @@
 
 namespace anamorph {
 
-/// What kind of value a parameter takes.
+/// The kind of value that a parameter takes.
 enum class ParameterType {
     number,   ///< a finite decimal number, with a point whatever the locale
     whole,    ///< an integer
     toggle,   ///< 0 or 1
     choice,   ///< one of `choices`
     extent,   ///< N or NxM, integers, or one of `choices`
-    numbers,  ///< one or more such numbers, separated by commas
+    numbers,  ///< one or more numbers, separated by commas
     image,    ///< the name of an image, or of a recipe
     file,     ///< the name of another file
     text      ///< any text that is not empty
@@ -101,7 +101,7 @@ class ParameterValues {
     std::vector<double> numbers(std::string_view name) const;
     /// Is a toggle on?
     bool toggle(std::string_view name) const { return text(name) == "1"; }
-    /// Which of its choices a parameter has, counted from 0; the number of choices where it has none of them.
+    /// The choice that a parameter has, counted from 0; the number of choices where it has none of them.
     std::size_t choice(std::string_view name) const;
     /// The value that the choice of a parameter has in its enumeration (Parameter::enumerators).
     int enumerator(std::string_view name) const;
@@ -110,7 +110,8 @@ class ParameterValues {
 
     /// The definitions, by keys that are not in the table, in the order in which each key first came.
     const std::vector<Assignment>& definitions() const { return m_definitions; }
-    /// For operations that read no definitions: throws Error of the first, as assign() does of a key that is unknown.
+    /// Throws Error of the first definition, as assign() does of a key that is unknown: for operations that
+    /// read no definitions.
     void refuse_definitions() const;
 
     /// All values as one text, which differs where any value does; `without` names the parameters to leave out.

@@ -18,7 +18,7 @@
 
 namespace anamorph {
 
-/// What a map keeps of a region for its computed or bicubic blocks.
+/// The data that a map keeps of a region for its computed or bicubic blocks.
 struct RegionData {
     virtual ~RegionData() = default;
 };
@@ -67,7 +67,7 @@ inline bool in_double(const Block& block) {
 /// The source points of a block less its base, evaluated in float by Block-wide loops: the sums of c[j][i]
 /// s^i t^j (x) and c[j][4 + i] s^i t^j (y), by Horner's rule for t, then for s.
 struct BlockPolynomial {
-    int degree = 2;  ///< or 3, in s and in t
+    int degree = 2;  ///< the highest degree in s and in t: 2 or 3
     float c[4][8] = {};
 };
 
@@ -116,7 +116,7 @@ struct DoubleRows {
     std::ptrdiff_t stride;  ///< entries from row to row; behind each there is room for 16 more
 };
 
-/// How a map is laid out, and what is kept of it.
+/// The layout of a map, and how much is kept of it.
 struct BlockLayout {
     int layers = 1;
     int region_side = 256;  ///< pixels

@@ -14,10 +14,10 @@
 
 namespace anamorph::plan_detail {
 
-/// What a region's bicubic blocks are made of.
+/// The coefficients of a region's bicubic blocks.
 struct Cubics : RegionData {
     std::vector<CubicTerms> terms;
-    /// All coefficients of those in double, up to degree 4 as in Jet, less the base.
+    /// All coefficients of a block in double, up to degree 4 as in Jet, less the base.
     struct Precise {
         double x[15], y[15];
     };
@@ -29,7 +29,8 @@ inline BlockPolynomial cubic_of(const Block& block) {
     return with_cubic_terms(block, cubics.terms[static_cast<std::size_t>(block.record)]);
 }
 
-/// A row of a polynomial in double: by Horner's rule for t, then for s, as image/block_sampler_lanes.cpp does in float.
+/// Evaluates a row of a polynomial in double: by Horner's rule for t, then for s, as
+/// image/block_sampler_lanes.cpp does in float.
 inline void precise_row(const Block& block, int row, double* to_x, double* to_y) {
     const auto& cubics = static_cast<const Cubics&>(*block.data);
     const Cubics::Precise& c = cubics.precise[static_cast<std::size_t>(block.record)];
@@ -53,7 +54,7 @@ inline void precise_row(const Block& block, int row, double* to_x, double* to_y)
     }
 }
 
-/// What all blocks of a region are made of.
+/// The records of all blocks of a region.
 template <class Local>
 struct Records : Cubics {
     DirectRecords<Local> direct;
@@ -68,7 +69,7 @@ NearBlock<Local, Real> near_block(const Block& block) {
 struct Fit {
     Point<Jet<double, 4>> taylor;
     EconomizedCubic x, y;
-    double error;  ///< of the cubic
+    double error;  ///< the largest distance of the cubic from the Taylor polynomial
 
     explicit Fit(const Point<Jet<double, 4>>& f)
         : taylor(f), x(f.x), y(f.y), error(length(x.error, y.error)) {}
@@ -86,7 +87,7 @@ class BlockEmitter {
 
     void outside(const Box& box) { append(box, Block::Kind::outside); }
     void exact(const Box& box) { append(box, Block::Kind::exact); }
-    /// What the fallback is for.
+    /// Appends a block for pixels that no polynomial serves: direct or exact, as the fallback is.
     void without_polynomial(const Box& box) {
         const Fallback& fallback = m_costs.fallback();
         if (!fallback.is_direct()) return exact(box);
@@ -96,22 +97,22 @@ class BlockEmitter {
         m_costs.save_direct(box);
     }
 
-    /// True when a polynomial of degree 2 or, where that does not, 3 keeps the tolerance, `error` away from the
-    /// map besides: then the block is appended.
+    /// Appends a block if a polynomial of degree 2 or, where that does not, 3 keeps the tolerance, `error`
+    /// away from the map besides. True if so.
     bool fit(const Box& box, const Local& local, const Fit& fit, double error) {
         if (!(fit.error + error <= m_tol)) return false;
         const Economized x(fit.x), y(fit.y);
         return quadratic(box, local, x.c, y.c, length(x.error, y.error) + error) ||
                cubic(box, local, fit.x.c, fit.y.c, fit.error + error);
     }
-    /// True when the polynomial, off by `error` in double and evaluated in float, keeps the tolerance: then
-    /// the block is appended.
+    /// Appends a block if a quadratic, off by `error` in double and evaluated in float, keeps the tolerance.
+    /// True if so.
     bool quadratic(const Box& box, const Local& local, const double* cx, const double* cy, double error) {
         if (!BlockWriter(m_tol, m_blocks).polynomial(box, cx, cy, error)) return false;
         finish(box, local);
         return true;
     }
-    /// The same for the Taylor polynomial as it is, in double.
+    /// Appends a block if the Taylor polynomial as it is, in double, keeps the tolerance. True if so.
     bool in_double(const Box& box, const Local& local, const Point<Jet<double, 4>>& taylor, double error) {
         const double *x = taylor.x.c, *y = taylor.y.c;
         // The base may come to stand a turn farther away.
@@ -129,7 +130,8 @@ class BlockEmitter {
         return true;
     }
 
-    /// body() appends blocks. True when none of them is a polynomial's: then they are taken back.
+    /// Calls body(), which appends blocks. True when none of them is a polynomial's: then they are taken
+    /// back.
     template <class Body>
     bool takes_back(const Body& body) {
         const std::size_t first = m_blocks.size();
@@ -157,7 +159,7 @@ class BlockEmitter {
         block.piece = m_piece;
         m_blocks.push_back(block);
     }
-    /// What the writer does not know of a polynomial's block.
+    /// Fills in what the writer does not know of a polynomial's block.
     void finish(const Box& box, const Local& local) {
         m_costs.save_polynomial(box);
         Block& block = m_blocks.back();

@@ -9,17 +9,18 @@
 
 namespace anamorph {
 
-/// How far, in texels of one coordinate, the point that is sampled may be from the one given (image/block_sampler.h), less 2^-24
-/// of the offset: x - 1/2 is rounded by at most 2^-24 (|x| + 1/2), and what is left of it past a whole number by 2^-25 just below
-/// one, else not at all. Nearest texels are those of the points given.
+/// The largest distance, in texels of one coordinate, of the point that is sampled from the one given
+/// (image/block_sampler.h), less 2^-24 of the offset: x - 1/2 is rounded by at most 2^-24 (|x| + 1/2), and
+/// what is left of it past a whole number by 2^-25 just below one, else not at all. Nearest texels are those
+/// of the points given.
 inline constexpr double kSamplerRounding = 0x1p-24;
 
-/// Source points farther away than this are none.
+/// The farthest that a source point may be; others are none.
 inline constexpr double kFarthest = 1 << 30;
 
-/// What rounding to float may cost a term of power n = i + j, of s^i t^j in a block's polynomial, over its
-/// size. Every rounding is a factor within 1 -+ u, u = 2^-24. image/block_sampler_lanes.cpp rounds so often, where
-/// multiplication and addition round apart (fused, it does so less):
+/// The largest rounding to float of a term of power n = i + j, of s^i t^j in a block's polynomial, over its
+/// size. Every rounding is a factor within 1 -+ u, u = 2^-24. image/block_sampler_lanes.cpp rounds so often,
+/// where multiplication and addition round apart (fused, it does so less):
 ///
 /// - 2 times the coefficient: as it is stored, and again in texels of a pyramid's level;
 ///
@@ -36,7 +37,7 @@ constexpr double term_rounding(int n) {
     return (4 * n + 5) * (1.01 * 0x1p-24);
 }
 
-/// And the whole of it for a point: that of a polynomial's terms in x and in y with the sampler's own.
+/// The largest rounding of a point: that of a polynomial's terms in x and in y with the sampler's own.
 inline double point_rounding(double terms_x, double terms_y) {
     const double x = terms_x + kSamplerRounding, y = terms_y + kSamplerRounding;
     return std::sqrt(x * x + y * y);
@@ -51,38 +52,38 @@ class BlockWriter {
   public:
     // A block is at most as large as keeps its source and target rows in the first-level cache.
     static constexpr int kWidth = 64, kHeight = 32;
-    // A polynomial costs as much to plan as so many exact pixels.
+    // The number of exact pixels that cost as much as to plan a polynomial.
     static constexpr int kFloorPixels = 12;
 
     BlockWriter(double tol, Blocks& blocks) : m_tol(tol), m_blocks(blocks) {}
 
     static bool below_floor(const Box& box) { return box.width() * box.height() < kFloorPixels; }
 
-    /// `bound`: of the rounding in double.
+    /// Writes an exact block. `bound`: that of the rounding in double.
     void exact(const Box& box, double bound) { add(box, Block::Kind::exact, bound); }
     void outside(const Box& box) { add(box, Block::Kind::outside, 0); }
 
-    /// A quadratic block, coefficients as in Block with the base. True when it keeps the tolerance in float,
-    /// `error` apart: then it is written.
+    /// Writes a quadratic block, coefficients as in Block with the base, if it keeps the tolerance in float,
+    /// `error` apart. True if so.
     bool polynomial(const Box& box, const double* x, const double* y, double error) {
         Block block;
         if (!start(box, Block::Kind::polynomial, x, y, block)) return false;
         return finish(block, rounding<6>(x, block.base_x), rounding<6>(y, block.base_y), error);
     }
 
-    /// A bicubic block of total degree 3: coefficients degree by degree (EconomizedCubic), as the map will give
-    /// them, with the base.
+    /// Writes, if it keeps the tolerance, a bicubic block of total degree 3: coefficients degree by degree
+    /// (EconomizedCubic), as the map will give them, with the base.
     bool cubic(const Box& box, const double* x, const double* y, double error) {
         Block block;
         if (!start(box, Block::Kind::bicubic, x, y, block)) return false;
         return finish(block, rounding<10>(x, block.base_x), rounding<10>(y, block.base_y), error);
     }
-    /// What rounding to float may cost it.
+    /// The largest rounding to float of a cubic.
     static double cubic_rounding(const double* x, const double* y) {
         return point_rounding(rounding<10>(x, std::floor(x[0])), rounding<10>(y, std::floor(y[0])));
     }
-    /// One of total degree 4 in double: as often rounded, but for what the sampler does, and once more as the
-    /// base is added.
+    /// Writes, if it keeps the tolerance, a bicubic block of total degree 4 in double: as often rounded, but
+    /// for what the sampler does, and once more as the base is added.
     bool precise(const Box& box, const double* x, const double* y, double error) {
         Block block;
         if (!start(box, Block::Kind::bicubic, x, y, block)) return false;
@@ -96,8 +97,8 @@ class BlockWriter {
         return true;
     }
 
-    /// A bicubic block: coefficients of s^i t^j as the map will give them, with the base, and the quadratic
-    /// near it.
+    /// Writes, if it keeps the tolerance, a bicubic block: coefficients of s^i t^j as the map will give them,
+    /// with the base, and the quadratic near it.
     bool bicubic(const Box& box, const double (&x)[4][4], const double (&y)[4][4], const double* near_x,
                  const double* near_y, double error) {
         Block block;
@@ -105,9 +106,9 @@ class BlockWriter {
         return finish(block, rounding(x, block.base_x), rounding(y, block.base_y), error);
     }
 
-    /// A computed block whose base is `middle` rounded down. True when it keeps the tolerance: `error` holds
-    /// the rounding of offsets from the base, when they are stored and when the sampler moves them; or that of
-    /// points in double.
+    /// Writes a computed block whose base is `middle` rounded down, if it keeps the tolerance. `error` holds
+    /// the rounding of offsets from the base, when they are stored and when the sampler moves them; or that
+    /// of points in double.
     bool computed(const Box& box, const Point<double>& middle, double error, bool precise = false) {
         if (!precise) error += point_rounding(0, 0);
         if (!(error <= m_tol && std::fabs(middle.x) < kFarthest && std::fabs(middle.y) < kFarthest))
@@ -123,7 +124,8 @@ class BlockWriter {
         return true;
     }
 
-    /// `body` on the halves of a box of at least two pixels; where all that comes of it is exact, one block.
+    /// Calls body(half) for the halves of a box of at least two pixels; where all that comes of it is exact,
+    /// one block.
     template <class Body>
     void halve(const Box& box, bool vertical_cut, const Body& body) {
         const std::size_t first = m_blocks.size();
@@ -144,7 +146,7 @@ class BlockWriter {
         exact(box, bound);
     }
 
-    /// body(block) for boxes of at most kWidth x kHeight pixels.
+    /// Calls body(block) for the parts of a box, of at most kWidth x kHeight pixels.
     template <class Body>
     static void for_blocks(const Box& box, const Body& body) {
         for (int y = box.y0; y < box.y1; y += kHeight)
@@ -161,7 +163,7 @@ class BlockWriter {
         m_blocks.push_back(block);
     }
 
-    /// Base and quadratic. False where they are too far away.
+    /// Sets a block's base and quadratic. False where they are too far away.
     static bool start(const Box& box, Block::Kind kind, const double* x, const double* y, Block& block) {
         if (!(std::fabs(x[0]) < kFarthest && std::fabs(y[0]) < kFarthest)) return false;
         block.box = box;
@@ -181,7 +183,7 @@ class BlockWriter {
         return true;
     }
 
-    /// What rounding to float may cost: of a polynomial of total degree 2, 3 or 4,
+    /// The largest rounding to float of a coordinate of a polynomial of total degree 2, 3 or 4.
     template <int Count>
     static double rounding(const double* c, double base) {
         constexpr int kPower[15] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4};
@@ -189,7 +191,7 @@ class BlockWriter {
         for (int i = 0; i < Count; ++i) sum += std::fabs(i ? c[i] : c[0] - base) * term_rounding(kPower[i]);
         return sum;
     }
-    /// and of a bicubic.
+    /// The largest rounding to float of a coordinate of a bicubic.
     static double rounding(const double (&c)[4][4], std::int32_t base) {
         double sum = 0;
         for (int i = 0; i < 4; ++i)
@@ -198,7 +200,7 @@ class BlockWriter {
         return sum;
     }
 
-    /// The size of a polynomial of total degree 4.
+    /// The sum of the magnitudes of the coefficients of a polynomial of total degree 4.
     static double size(const double* c, double base) {
         double sum = std::fabs(c[0] - base);
         for (int i = 1; i < 15; ++i) sum += std::fabs(c[i]);

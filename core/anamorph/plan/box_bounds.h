@@ -13,11 +13,11 @@
 
 namespace anamorph::plan_detail {
 
-// What a Taylor polynomial goes through once its coefficients are known, in units of rounding of their sum:
-// moved and scaled to a part of its box, 25 operations for each variable, of which the shift's own rounding
-// counts four times more, on magnitudes that a part's outermost pixel may double; rearranged in Chebyshev
-// polynomials, 6 operations on twice the sum; less a base, as four corners' mean and as linear part and
-// residual of a table, 8.
+// The roundings that a Taylor polynomial goes through once its coefficients are known, in units of rounding
+// of their sum: moved and scaled to a part of its box, 25 operations for each variable, of which the shift's
+// own rounding counts four times more, on magnitudes that a part's outermost pixel may double; rearranged in
+// Chebyshev polynomials, 6 operations on twice the sum; less a base, as four corners' mean and as linear part
+// and residual of a table, 8.
 inline constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53;
 // Blocks of a box share a bound of rounding up to this part of the tolerance; above, each has its own.
 inline constexpr double kSharedRounding = 1.0 / 64;

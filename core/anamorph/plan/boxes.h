@@ -15,7 +15,7 @@
 namespace anamorph::plan_detail {
 
 inline constexpr int kBlockWidth = BlockWriter::kWidth, kBlockHeight = BlockWriter::kHeight;
-// Below this a polynomial costs more than its pixels.
+// The least sides of boxes: below, a polynomial costs more than its pixels.
 inline constexpr int kFloor = 8, kResidualFloor = 4;
 
 inline int pixels_of(const Box& box) {
@@ -79,7 +79,7 @@ class Quarters {
     std::size_t m_count = 0;
 };
 
-/// body(part) for the parts of a box on a grid of width x height from its corner.
+/// Calls body(part) for the parts of a box on a grid of width x height from its corner.
 template <class Body>
 void for_boxes(const Box& box, int width, int height, const Body& body) {
     for (int y = box.y0; y < box.y1; y += height)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What planning a region has cost and saved so far, and so what it may still cost. Wrong costs make pictures slower, and
-// change no bound.
+// The costs and savings of planning a region so far, and so what it may still cost. Wrong costs make pictures
+// slower, and change no bound.
 #pragma once
 
 #include "anamorph/plan/boxes.h"
@@ -8,10 +8,10 @@
 
 namespace anamorph::plan_detail {
 
-/// What those pixels get that no polynomial serves, as far as is known of the box that is being settled.
+/// The way to draw pixels that no polynomial serves, as far as is known of the box that is being settled.
 struct Fallback {
     enum Kind { unknown, exact, direct_in_float, direct_in_double } kind = unknown;
-    double saving = 1;  ///< of a polynomial's pixel over one of these, in exact pixels
+    double saving = 1;  ///< what a polynomial's pixel saves over one of these, in exact pixels
 
     bool is_direct() const { return kind >= direct_in_float; }
 };
@@ -38,25 +38,25 @@ class CostModel {
                (!m_only_fastest || pixels_of(box) * m_fallback.saving >= m_costs.bound_pixels);
     }
 
-    /// What polynomials in all cost is paid for by what they save over the fallback.
+    /// Pays for bounds. What polynomials in all cost is paid for by what they save over the fallback.
     void pay_for_bounds(std::size_t at_once) {
         pay(m_costs.bound + m_costs.further_bound * (static_cast<double>(at_once) - 1));
     }
     void pay_for_rounding() { pay(m_costs.rounding); }
-    /// `alone`: with a bound of its own rounding.
+    /// Pays for a polynomial. `alone`: with a bound of its own rounding.
     void pay_for_polynomial(bool alone) {
         pay(alone ? m_costs.polynomial + m_costs.rounding : m_costs.polynomial);
     }
     void pay_for_direct_trial() { m_balance -= m_costs.direct_trial; }
 
-    /// A box became a polynomial's.
+    /// Enters a box that became a polynomial's.
     void save_polynomial(const Box& box) {
         const int pixels = pixels_of(box);
         if (m_fallback.is_direct()) m_over_direct += pixels;
         m_balance += pixels * (m_fallback.is_direct() ? 1 - m_fallback.saving : 1);
     }
     void pay_for_double(const Box& box) { pay(m_costs.double_pixel * pixels_of(box)); }
-    /// A box is left to direct blocks.
+    /// Enters a box that is left to direct blocks.
     void save_direct(const Box& box) { m_balance += pixels_of(box) * (1 - m_fallback.saving); }
 
   private:
@@ -71,7 +71,7 @@ class CostModel {
     bool m_only_fastest;
     Fallback m_fallback;
     double m_balance;      ///< exact pixels saved less those that bounds and polynomials would have paid for
-    double m_over_direct;  ///< the same in direct pixels, over those where they serve
+    double m_over_direct;  ///< m_balance in direct pixels, over those where they serve
 };
 
 }  // namespace anamorph::plan_detail

@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ways to plan and to draw a map cost, by which plans choose among them. A cost that is wrong makes pictures slower,
-// never a bound.
+// The costs of the ways to plan and to draw a map, by which plans choose among them. A cost that is wrong
+// makes pictures slower, never a bound.
 #pragma once
 
 namespace anamorph {
 
-/// In exact pixels of the map. The defaults are those of panoramas. speed_vs_error --calibrate measures them; its table is
-/// tests/bench/costs.md.
+/// Costs in exact pixels of the map. The defaults are those of panoramas. speed_vs_error --calibrate measures
+/// them; its table is tests/bench/costs.md.
 struct PlanCosts {
     double bound = 500;         ///< a bound over a box
-    double further_bound = 60;  ///< each further one at once
-    /// Where only the fastest way is asked for, what bounds may cost beyond what they have saved so far: a part of the region's pixels.
+    double further_bound = 60;  ///< each further bound at once
+    /// The most that bounds may cost beyond what they have saved so far, where only the fastest way is asked
+    /// for: a part of the region's pixels.
     double credit = 1.0 / 16;
-    double bound_pixels = 512;   ///< a box of fewer is not bounded: that could not pay
+    double bound_pixels = 512;   ///< a box of fewer pixels is not bounded: that could not pay
     double polynomial = 40;      ///< a Taylor polynomial
-    double rounding = 80;        ///< to find for a block alone what rounding costs it
+    double rounding = 80;        ///< finding for a block alone what rounding costs it
     double double_pixel = 1;     ///< what a polynomial's pixel costs more in double than in float
-    double direct_trial = 130;   ///< to look whether direct blocks hold the tolerance
+    double direct_trial = 130;   ///< looking whether direct blocks hold the tolerance
     double direct_pixel = 0.3;   ///< what a polynomial's pixel saves where it could be direct, in float
-    double precise_pixel = 0.9;  ///< or in double
+    double precise_pixel = 0.9;  ///< what a polynomial's pixel saves where it could be direct, in double
 };
 
-/// Those of a map, unless it has its own.
+/// The costs of a map: its own, or the defaults.
 template <class Map>
 PlanCosts costs_of() {
     if constexpr (requires { Map::kCosts; })

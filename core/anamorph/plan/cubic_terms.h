@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a bicubic block of total degree 3 has beyond its quadratic.
+// The terms that a bicubic block of total degree 3 has beyond its quadratic.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@ struct CubicTerms {
     float x[4], y[4];
 
     CubicTerms() = default;
-    /// Of all ten, degree by degree.
+    /// Takes them from all ten coefficients, degree by degree.
     CubicTerms(const double* all_x, const double* all_y) {
         std::copy_n(all_x + 6, 4, x);
         std::copy_n(all_y + 6, 4, y);
     }
 };
 
-/// The polynomial of a block, whose quadratic is the start of it.
+/// The polynomial of a block, whose first terms are the block's quadratic.
 inline BlockPolynomial with_cubic_terms(const Block& block, const CubicTerms& terms) {
     BlockPolynomial p = quadratic_of(block);
     p.degree = 3;

@@ -16,12 +16,12 @@ namespace anamorph::plan_detail {
 // blocks; and where nothing larger holds the tolerance.
 inline constexpr int kLeastInFloat = 512, kLeastDirect = 128;
 
-/// What a region's direct blocks are read with.
+/// The records that a region's direct blocks are read with.
 template <class Local>
 struct DirectRecords {
     struct Reading {
         Local place;
-        std::size_t first, count;  ///< of its bases
+        std::size_t first, count;  ///< position and number of its bases
         Point<double> middle;
     };
 
@@ -29,7 +29,7 @@ struct DirectRecords {
     std::vector<float> in_float;
     std::vector<double> in_double;
 
-    /// Appends a reading with its bases in Real. Returns its number.
+    /// Appends a reading with its bases in Real. Returns the reading's number.
     template <class Real>
     int add(const Local& place, const NearReading& found, const Bases& bases) {
         auto& all = all_of<Real>(*this);
@@ -53,7 +53,8 @@ struct DirectRecords {
     }
 };
 
-/// The turn that brings a block's middle into an image that closes on itself; of others the period is 0.
+/// Makes the turn that brings a block's middle into an image that closes on itself; of others the period is
+/// 0.
 inline void turn_into_image(Block& block, int period) {
     if (period > 0)
         block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
@@ -91,7 +92,8 @@ class DirectBlocks {
     DirectBlocks(const Map& map, double goal, const ReadOrders& orders, DirectRecords<Local>& records)
         : m_map(map), m_goal(goal), m_orders(orders), m_records(records) {}
 
-    /// Appends the blocks of one that lies on one branch of the map; exact ones where none holds the tolerance.
+    /// Appends the blocks of a block that lies on one branch of the map; exact ones where no direct one holds
+    /// the tolerance.
     void place(const Block& left, Blocks& blocks) {
         const Box& box = left.box;
         const Local local = m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), left.piece);
@@ -104,7 +106,7 @@ class DirectBlocks {
         if (!(read<double>(left, local, blocks) <= m_goal)) halve(left, blocks);
     }
 
-    /// All blocks of a plan, with those made.
+    /// The blocks of a plan, with the direct ones made.
     Blocks placed(const Blocks& planned) {
         Blocks blocks;
         blocks.reserve(planned.size());
@@ -117,7 +119,7 @@ class DirectBlocks {
     }
 
   private:
-    /// The block in Real if it holds the tolerance. Returns its error.
+    /// Appends the block in Real if it holds the tolerance. Returns its error.
     template <class Real>
     double read(const Block& left, const Local& local, Blocks& blocks) {
         constexpr bool kPrecise = std::is_same_v<Real, double>;
@@ -132,7 +134,7 @@ class DirectBlocks {
         turn_into_image(block, m_map.period());
         return block.bound;
     }
-    /// Halves that both came out exact are one block.
+    /// Places the halves of a block. Halves that both came out exact are one block.
     void halve(const Block& left, Blocks& blocks) {
         const std::size_t first = blocks.size();
         Block half = left;

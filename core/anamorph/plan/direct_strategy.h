@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a map may be read pixel by pixel near the middles of blocks (direct_blocks.h), in float or in double.
+// Decides where a map may be read pixel by pixel near the middles of blocks (direct_blocks.h), in float or in
+// double.
 #pragma once
 
 #include <cmath>
@@ -14,7 +15,7 @@ namespace anamorph::plan_detail {
 template <FormulaMap Map>
 class DirectStrategy {
   public:
-    /// `goal`: what errors must not exceed. `in_double`: is float not tried?
+    /// `goal`: the largest error that is allowed. `in_double`: is float not tried?
     DirectStrategy(const Map& map, const BoxBounds<Map>& bounds, const ReadOrders& orders, double goal,
                    bool in_double, CostModel& costs)
         : m_map(map),
@@ -31,10 +32,10 @@ class DirectStrategy {
             return false;
     }
 
-    /// What serves most of a box, judged by the block in its middle.
+    /// The way that serves most of a box, judged by the block in its middle.
     struct Trial {
         Fallback fallback;
-        double error = 0;  ///< where that is unknown: of the block; 0 where it was not tried
+        double error = 0;  ///< the block's, where the fallback is unknown; 0 where it was not tried
     };
     Trial try_middle(const Box& box) {
         if constexpr (DirectMap<Map>)
@@ -65,7 +66,8 @@ class DirectStrategy {
         Box box;
         double error;
     };
-    /// Where blocks are too large for any bound, smaller ones may have one.
+    /// Reads the block in the middle of a box. Where blocks are too large for any bound, smaller ones may
+    /// have one.
     template <class Real>
     Middle read_middle(const Box& box) {
         Middle middle{is_block(box) ? box : middle_of(box), 0};

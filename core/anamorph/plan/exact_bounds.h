@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rounding costs exact pixels.
+// The roundings of exact pixels.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace anamorph::plan_detail {
 
-// Where any pixel is exact, what rounding costs it need not be known better than this (source pixels).
+// The precision to which rounding needs to be known where every pixel is exact (source pixels).
 inline constexpr double kExactGoal = 1e-4;
-// Boxes of up to so many exact pixels are read in long double where that keeps the tolerance, larger ones are
+// The most exact pixels of a box that is read in long double where that keeps the tolerance; larger ones are
 // halved first.
 inline constexpr int kPrecisePixels = 64;
-// Long double is at most so many times more precise: 11 bits less those by which constants are known worse.
+// The largest gain of precision by long double: 11 bits less those by which constants are known worse.
 inline constexpr double kPreciseGain = 512;
-// Bounds above the tolerance are alike up to this factor.
+// The factor up to which bounds above the tolerance are alike.
 inline constexpr double kAlike = 4;
 
 /// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
@@ -27,7 +27,7 @@ class ExactBounds {
     ExactBounds(const Map& map, double tol, Blocks& blocks)
         : m_map(map), m_goal(tol > 0 ? tol : kExactGoal), m_blocks(blocks) {}
 
-    /// Appends the blocks of an exact block.
+    /// Appends the parts of an exact block.
     void place(Block block) {
         const Interval x{block.box.x0 + 0.5, block.box.x1 - 0.5}, y{block.box.y0 + 0.5, block.box.y1 - 0.5};
         block.bound = bound_of<double>(block, x, y);
@@ -45,7 +45,7 @@ class ExactBounds {
     }
 
   private:
-    /// Halves that came out alike are one block again.
+    /// Places the halves of a block. Halves that came out alike are one block again.
     void halve(const Block& block) {
         const std::size_t first = m_blocks.size();
         const bool vertical_cut = block.box.width() >= block.box.height();
@@ -63,7 +63,7 @@ class ExactBounds {
         m_blocks[first].box = block.box;
         m_blocks[first].bound = bound;
     }
-    /// Infinite where none is known.
+    /// The bound of a block's rounding; infinite where none is known.
     template <class Real>
     double bound_of(const Block& block, const Interval& x, const Interval& y) const {
         const double bound = m_map.template exact_error<Real>(x, y, block.piece);

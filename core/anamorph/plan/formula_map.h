@@ -34,7 +34,7 @@ namespace anamorph {
 /// source point, those that have one do (and the map is smooth over all of the box), or it is not known.
 enum class Cover { inside, outside, partial, mixed };
 
-/// In which directions nothing of a source image lies beyond its edges.
+/// The directions in which nothing of a source image lies beyond its edges.
 struct SourceEdges {
     bool across = true, down = true;
 };

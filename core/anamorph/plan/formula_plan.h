@@ -22,15 +22,15 @@ namespace anamorph {
 struct PlanOptions {
     Scheme scheme = Scheme::automatic;
     double tol = 0.01;  ///< source pixels
-    /// Source points that lie outside the source image by more than a filter's support need not be found.
+    /// May source points be left out that lie outside the source image by more than a filter's support?
     bool cull = true;
-    /// Blocks may run over the seam of a source that closes on itself, with x beyond its edges.
+    /// May blocks run over the seam of a source that closes on itself, with x beyond its edges?
     bool across_seam = true;
-    /// What things are taken to cost: by default costs_of() the map.
+    /// The costs that things are taken to have: by default costs_of() the map.
     std::optional<PlanCosts> costs = {};
 };
 
-/// A computed block as it is read near its middle: where, the source point there, and its bases.
+/// A computed block as it is read near its middle: the place, the source point there, and its bases.
 template <class Local, class Real>
 struct NearBlock {
     const Local& place;
@@ -39,7 +39,7 @@ struct NearBlock {
 };
 
 /// The orders in which computed() and exact_rows() read a block's bases, in float and in double, as NearReading has that in
-/// which they were written. A block whose bases come in another one is exact.
+/// which they were written. A block whose bases come in another order is exact.
 struct ReadOrders {
     std::uint64_t in_float = 0, in_double = 0;
 };
@@ -66,7 +66,7 @@ class FormulaPlan : public BlockMap {
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
-    /// How a computed block is read, in float or in double.
+    /// A computed block as it is read, in float or in double.
     static NearBlock<typename Map::Local, float> near_in_float(const Block& block);
     static NearBlock<typename Map::Local, double> near_in_double(const Block& block);
 

@@ -150,7 +150,8 @@ class PolynomialStrategy {
         return bound;
     }
 
-    /// A Taylor polynomial, and how far it is from the map anywhere in its box, remainder and rounding.
+    /// A Taylor polynomial, and its largest distance from the map anywhere in its box, remainder and
+    /// rounding.
     struct Expansion {
         Box box;
         Taylor taylor;
@@ -193,7 +194,7 @@ class PolynomialStrategy {
             : m_bounds(bounds), m_local(local), m_known(known) {}
 
         void add(const Box& box) { m_boxes.push_back(box); }
-        /// Some may be left out.
+        /// The Taylor polynomial of a box; boxes that were added may be left out.
         const Taylor& of(const Box& box) {
             if (m_boxes.size() == 1 && m_known.itself && box == m_known.box) return *m_known.itself;
             while (m_boxes[m_at] != box) ++m_at;
@@ -222,8 +223,8 @@ class PolynomialStrategy {
         return length(bound.x.over(hx, hy), bound.y.over(hx, hy));
     }
 
-    /// Tried on the block in the middle of a box. Halving the box costs two bounds, and may save the blocks that are cut smaller
-    /// only for what the intervals are wide.
+    /// Does a bound serve a box, as tried on the block in its middle? Halving the box costs two bounds, and
+    /// may save the blocks that are cut smaller only for what the intervals are wide.
     bool serves(const Box& box, const Taylor& in_middle, const Bound& bound) const {
         const Box middle = middle_of(box);
         const double tail = tail_over(middle, bound);
@@ -238,8 +239,9 @@ class PolynomialStrategy {
         return blocks * (parts(error, tail) - parts(error, least)) * costs().polynomial <= 2 * costs().bound;
     }
 
-    /// Into how many parts a block is cut until a cubic holds the tolerance: its error falls with the fourth
-    /// power of the side, the remainder with the fifth, and what rounding takes of the tolerance with the side itself.
+    /// The number of parts into which a block is cut until a cubic holds the tolerance: its error falls with
+    /// the fourth power of the side, the remainder with the fifth, and what rounding takes of the tolerance
+    /// with the side itself.
     double parts(double fit, double tail, double rounding = 0) const {
         double count = 1, side = 1;
         while (count < kMostParts && !(std::max(fit + tail * side, tail * side / kTailShare) <=

@@ -22,7 +22,8 @@ struct LinearPart {
     }
 };
 
-/// The map's derivative at the piece's centre; the centre of the source where there is none.
+/// The linear part by the map's derivative at the piece's centre; the centre of the source where there is
+/// none.
 template <class Map>
 LinearPart linear_part(const Map& map, int piece) {
     const Box box = map.target_pieces()[static_cast<std::size_t>(piece)];
@@ -43,7 +44,8 @@ LinearPart linear_part(const Map& map, int piece) {
     return part;
 }
 
-/// The residual (4.4) at a target point, in source pixels: what the map, read around `local`, is beyond its linear part.
+/// The residual (4.4) at a target point, in source pixels: the difference of the map, read around `local`,
+/// from its linear part.
 template <class Map>
 Point<double> residual_at(const Map& map, const LinearPart& linear, const typename Map::Local& local,
                           double x, double y) {

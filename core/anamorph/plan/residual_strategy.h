@@ -11,7 +11,7 @@
 
 namespace anamorph::plan_detail {
 
-/// The cells of one piece of the target.
+/// Makes the cells of one piece of the target.
 template <FormulaMap Map>
 class ResidualStrategy {
   public:
@@ -20,12 +20,12 @@ class ResidualStrategy {
     ResidualStrategy(const Map& map, const BoxBounds<Map>& bounds, int piece)
         : m_map(map), m_bounds(bounds), m_piece(piece) {}
 
-    /// Bounds of the map's second derivatives over a box, by which interpolation in its cells is off.
+    /// Bounds of the map's second derivatives over a box: interpolation in its cells is off by them.
     class Curvature {
       public:
         explicit Curvature(const Point<Jet<Interval, 2>>& p) : m_p(p) {}
 
-        /// |f - its bilinear interpolant| <= h^2 / 2 max |f_ss| per direction, h half the cell.
+        /// Bounds |f - its bilinear interpolant| by h^2 / 2 max |f_ss| per direction, h half the cell.
         double error(int width, int height) const {
             const auto of = [&](const Jet<Interval, 2>& f) {
                 return 0.25 *
@@ -47,7 +47,7 @@ class ResidualStrategy {
         return Curvature(m_bounds.template enclose<2>(box, local));
     }
 
-    /// A cell as a block's polynomial, with coefficients as in Block, and all that it is off by.
+    /// A cell as a block's polynomial, with coefficients as in Block, and its error.
     struct Cell {
         double x[6], y[6], error;
     };
@@ -70,7 +70,7 @@ class ResidualStrategy {
     }
 
   private:
-    /// From values at a cell's corners, beyond the outermost pixel centres, to coefficients in s and t.
+    /// Leads from values at a cell's corners, beyond the outermost pixel centres, to coefficients in s and t.
     static void bilinear(const Box& box, const double* v, double* c) {
         const double ks = half(box.width()) / (0.5 * box.width()),
                      kt = half(box.height()) / (0.5 * box.height());

@@ -38,53 +38,53 @@ struct Part {
 /// A part of a cell that is one to one, or a fold.
 struct Sheet {
     static constexpr double kContraction = 1.0 / 4;
-    /// Parameters of a part run a hair beyond it, at least.
+    /// The least and the most that parameters run beyond a part: its hair.
     static constexpr double kHair = 1e-9, kMostHair = 1.0 / 16;
 
-    int cell;  ///< its number
+    int cell;  ///< number of the cell
     bool fold;
-    double s, t, hs, ht;    ///< the middle and half the size, parameters of the cell, from 0 to 1
+    double s, t, hs, ht;    ///< the middle and half the size of the part, parameters of the cell, from 0 to 1
     Point<double> at;       ///< f(0), target pixels
-    Matrix2 to_parameters;  ///< Y, per target pixel
-    double reach;           ///< of N
+    Matrix2 to_parameters;  ///< Y, parameters per target pixel
+    double reach;           ///< a bound of N, with room for the hair
     double hair;            ///< how far z runs beyond 1, so that no point on an edge is lost
     double noise;           ///< what rounding makes of z
-    double error;           ///< of a source point found here, source pixels
-    double edge;            ///< as far apart, source points on two parts' edges may be the same
+    double error;           ///< error of a source point found here, source pixels
+    double edge;            ///< source points on two parts' edges that are no farther apart may be the same
 
     /// A part that is left as a fold.
     static Sheet of_fold(int cell, const Part& s, const Part& t, const Point<double>& at) {
         return {cell, true, s.middle, t.middle, s.half, t.half, at, {0, 0, 0, 0}, 0, 0, 0, 0, 0};
     }
-    /// Does it come near a target point? Of one that is no fold.
+    /// Does it come near a target point? For a sheet that is no fold.
     bool reaches(double x, double y) const { return largest(to_parameters(x - at.x, y - at.y)) <= 1 + reach; }
-    /// Source pixels per target pixel, about, in a cell of that size.
+    /// The source pixels per target pixel, about, in a cell of that size.
     Matrix2 to_source(double width, double height) const {
         const Matrix2& y = to_parameters;
         const double w = hs * width, h = ht * height;
         return {w * y.a11, w * y.a12, h * y.a21, h * y.a22};
     }
-    /// Finds the parameters of (x, y), of one that is no fold, where f(z) is the target point of parameters z. False where there
-    /// are none.
+    /// Finds the parameters of (x, y) on a sheet that is no fold, where f(z) is the target point of
+    /// parameters z. False where there are none.
     template <class Map>
     bool find(double x, double y, const Map& f, Point<double>& z) const;
-    /// The box of parameters that may be those of points up to (hx, hy) from (x, y): none if there is no such.
+    /// The box of parameters of all points up to (hx, hy) from (x, y); none if there are no such.
     template <class Map>
     std::optional<std::pair<Part, Part>> narrowed(double x, double y, double hx, double hy, const Map& f,
                                                   int steps = 3) const;
 };
 
-/// What is known of a part.
+/// The facts that a look at a part finds.
 struct SeenPart {
-    Bounds bounds;  ///< target pixels; those of nothing meet nothing
-    double size;    ///< half of it
+    Bounds bounds;  ///< target pixels; the bounds of nothing meet nothing
+    double size;    ///< half the part's size in target pixels
     std::optional<Sheet> sheet;
-    bool cut_s;             ///< which way to cut if there is no sheet
-    bool is_torn = false;   ///< is it small, and does the map jump there?
+    bool cut_s;             ///< which way to cut the part if there is no sheet
+    bool is_torn = false;   ///< is the part small, and does the map jump there?
     bool is_point = false;  ///< is all that it leads to within rounding, so that cuts tell no more?
 };
 
-/// body(half of s, t) or body(s, half of t) for both halves.
+/// Calls body(half of s, t) or body(s, half of t) for both halves.
 template <class Body>
 void each_half(const Part& s, const Part& t, bool cut_s, const Body& body) {
     for (const double side : {-0.5, 0.5}) {
@@ -102,16 +102,17 @@ class SheetCutter {
   public:
     static constexpr std::size_t kFirst = std::size_t{1} << 15;
     struct Limits {
-        double fold_size;   ///< a part is cut no further at this size in target pixels,
-        int cuts;           ///< or after so many cuts
-        std::size_t parts;  ///< no more are looked at
-        int torn = 0;       ///< nor more that are torn
-        /// Nor, once kFirst are done, if all of the cell would take more by what they have done of it.
+        double fold_size;   ///< the size in target pixels at which a part is cut no further
+        int cuts;           ///< the number of cuts after which a part is cut no further
+        std::size_t parts;  ///< the most parts that are looked at
+        int torn = 0;       ///< the most torn parts that are looked at
+        /// The most parts that all of the cell may be foreseen to take, by what kFirst or more parts have
+        /// done of it.
         double foreseen = HUGE_VAL;
     };
     SheetCutter(const Bounds& target, const Limits& limits) : m_target(target), m_limits(limits) {}
 
-    /// False where there are too many parts, or too many that are torn.
+    /// Cuts a cell. False where there are too many parts, or too many that are torn.
     template <class Cell>
     bool cut(const Cell& cell) {
         return cut(cell, {0.5, 0.5}, {0.5, 0.5}, 0);
@@ -152,24 +153,24 @@ class SheetCutter {
     Bounds m_target;
     Limits m_limits;
     std::size_t m_parts = 0;
-    double m_done = 0;  ///< of the cell's area
+    double m_done = 0;  ///< the part of the cell's area that is done
 };
 
 /// One source point of a target point.
 struct Preimage {
     Point<double> at;
-    int cell;      ///< its number
+    int cell;      ///< number of the cell
     bool turned;   ///< is the map turned over there?
-    double error;  ///< of the point
-    double edge;   ///< above 0: on the edge of its part, as far as others may be the same point
-    /// About that of the derivative, source pixels per target pixel; 0 where it is not known.
+    double error;  ///< error of the point
+    double edge;   ///< above 0 on the edge of its part: the distance at which others may be the same point
+    /// About the inverse of the derivative, source pixels per target pixel; 0 where it is not known.
     Matrix2 inverse{0, 0, 0, 0};
 };
 struct Preimages {
     Preimage best;
     int count = 0;
-    bool on_fold = false;  ///< some could not be told apart
-    double error = 0;      ///< of the distance from the best to the exact one
+    bool on_fold = false;  ///< could some not be told apart?
+    double error = 0;      ///< bound of the distance from the best to the exact one
 };
 
 /// Collects the source points of one target point. An inverse gives
@@ -219,7 +220,7 @@ class PreimageSearch {
         each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { look(cell, a, b); });
     }
 
-    /// A part that may hold a source point or none.
+    /// Takes a part that may hold a source point or none.
     template <class Cell>
     void give_up(const Cell& cell, const Part& s, const Part& t) {
         m_all.on_fold = true;
@@ -279,7 +280,7 @@ bool Sheet::find(double x, double y, const Map& f, Point<double>& z) const {
     return moved <= noise && largest(z) <= 1 + hair;
 }
 
-/// Krawczyk's operator for all of the points at once: z = w - N(z), and in a box about c
+/// Narrows the box by Krawczyk's operator for all of the points at once: z = w - N(z), and in a box about c
 /// N(z) = N(c) +- contraction * its half size.
 template <class Map>
 std::optional<std::pair<Part, Part>> Sheet::narrowed(double x, double y, double hx, double hy, const Map& f,

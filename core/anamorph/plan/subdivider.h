@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the regions of a formula's plan are cut, top-down, until a polynomial, direct pixels or the exact formula serves each part.
+// Cuts the regions of a formula's plan, top-down, until a polynomial, direct pixels or the exact formula
+// serves each part.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +16,14 @@
 
 namespace anamorph::plan_detail {
 
-// Where a block in the middle of a box misses it by so much, others of it are not looked at.
+// The factor by which a block in the middle of a box has to miss the tolerance for others of the box not to
+// be looked at.
 inline constexpr double kHopeless = 4;
 
 inline bool is_all_exact(const PlanOptions& options) {
     return options.scheme == Scheme::exact || options.tol == 0;
 }
-/// What bounds must not exceed.
+/// The largest error that bounds may have.
 inline double goal_of(const PlanOptions& options) {
     if (!is_all_exact(options)) return options.tol;
     return options.tol > 0 ? std::min(options.tol, kExactError) : kExactError;
@@ -81,7 +83,7 @@ class Subdivider {
         }
     }
 
-    /// A box that lies on one branch.
+    /// Settles a box that lies on one branch.
     void settle_inside(const Box& box, Place& place, const Known* known = nullptr) {
         if (m_scheme == Scheme::residual) return settle_residual(box, place);
         if (m_scheme == Scheme::blocks) return settle_blocks(box, place, known);
@@ -102,7 +104,7 @@ class Subdivider {
             settle_fastest(box, place, known);
         m_costs.set_fallback({});
     }
-    /// By polynomials where they may be faster, else by the fallback.
+    /// Settles a box by polynomials where they may be faster, else by the fallback.
     void settle_fastest(const Box& box, Place& place, const Known* known) {
         if (m_scheme == Scheme::automatic)
             settle_blocks(box, place, known);
@@ -111,13 +113,13 @@ class Subdivider {
         else
             cut_for_fallback(box);
     }
-    /// In parts of which some may be direct, down to the least of such.
+    /// Settles a box in parts of which some may be direct, down to the least of such.
     void cut_for_fallback(const Box& box) {
         if (pixels_of(box) <= kLeastInFloat) return leave(box);
         split(box, [&](const Box& b) { settle(b); });
     }
 
-    /// What no polynomial serves.
+    /// Leaves a box to the fallback, since no polynomial serves it.
     void leave(const Box& box) {
         for_blocks(box, [&](const Box& b) {
             if (m_bounds.has_edges() && m_bounds.cover(b, m_bounds.place_about(b).local) == Cover::outside)
@@ -148,8 +150,8 @@ class Subdivider {
     static bool has_quarters(const Box& box) {
         return box.width() > 2 * kBlockWidth && box.height() > 2 * kBlockHeight;
     }
-    /// A large box is bounded in its quarters, which costs no more at once and is many times narrower. It stays whole where
-    /// they are no better off each by itself.
+    /// Settles a large box by bounds of its quarters, which costs no more at once and is many times narrower.
+    /// It stays whole where they are no better off each by itself.
     void settle_by_quarters(const Box& box, Place& place) {
         in_parts(box, Quarters(box), [&](std::span<const Box> quarters) {
             Known known[simd::kJets];
@@ -163,13 +165,13 @@ class Subdivider {
             for (std::size_t i = 0; i < quarters.size(); ++i) settle_known(known[i], place);
         });
     }
-    /// A box with what is known of it, unless all of it can be culled.
+    /// Settles a box with what is known of it, unless all of it can be culled.
     void settle_known(const Known& known, Place& place) {
         if (m_culls && m_bounds.lies_beyond(known.enclosed)) return m_emitter.outside(known.box);
         settle_inside(known.box, place, &known);
     }
-    /// What is in the quarters of a box; in its halves where quarters could not pay for their bounds. `kept`: none can be
-    /// culled.
+    /// Settles the quarters of a box, or its halves where quarters could not pay for their bounds. `kept`:
+    /// none can be culled.
     void settle_quarters(const Box& box, bool kept) {
         const Box quarter{box.x0, box.y0, box.x0 + box.width() / 2, box.y0 + box.height() / 2};
         const auto at_once = [&](std::span<const Box> parts) {
@@ -191,13 +193,13 @@ class Subdivider {
             split(box, one_by_one);
     }
 
-    /// Blocks all over a box that a bound serves.
+    /// Places blocks all over a box that a bound serves.
     void place_all_parts(const Box& box, Place& place, Bound bound, const Known& known) {
         bound.rounding = m_bounds.shared_rounding(box, place);
         for_boxes(box, 4 * kBlockWidth, 4 * kBlockHeight,
                   [&](const Box& b) { place_parts(b, place.local, bound, known); });
     }
-    /// Blocks about the middles of a box's parts.
+    /// Places blocks about the middles of a box's parts.
     void place_parts(const Box& box, const Local& local, const Bound& bound, const Known& known) {
         const Parts parts = m_polynomials.parts_of(box, bound);
         if (parts.are == Parts::left) return leave(box);
@@ -227,7 +229,8 @@ class Subdivider {
             unless_left(b, [&] { place_all(b, m_polynomials.with_rounding(bound, b, parts, local)); });
         });
     }
-    /// A part of an expansion's box as one polynomial block if that holds the tolerance, else in halves.
+    /// Places a part of an expansion's box as one polynomial block if that holds the tolerance, else in
+    /// halves.
     void place_block(const Box& box, const Expansion& expansion, const Local& local, const Bound& bound) {
         if (!is_block(box))
             return for_blocks(box, [&](const Box& b) { place_block(b, expansion, local, bound); });
@@ -253,7 +256,7 @@ class Subdivider {
         halve(box, vertical_cut, kFloor, [&](const Box& b) { place_block(b, expansion, local, bound); });
     }
 
-    /// Cells of a table, as wide as the second derivatives allow.
+    /// Settles a box by cells of a table, as wide as the second derivatives allow.
     void settle_residual(const Box& box, const Place& place) {
         const auto curvature = m_residuals.curvature(box, place.local);
         const auto settle_part = [&](const Box& b) { settle(b); };
@@ -272,7 +275,7 @@ class Subdivider {
         halve(box, box.width() > box.height(), kResidualFloor, [&](const Box& b) { settle(b); });
     }
 
-    /// body(part) for the halves of a box, cut across its longer side.
+    /// Calls body(part) for the halves of a box, cut across its longer side.
     template <class Body>
     void split(const Box& box, const Body& body) {
         halve(box, is_cut_vertically(box), kFloor, body);
@@ -283,19 +286,19 @@ class Subdivider {
             for (const Box& half : halves) body(half);
         });
     }
-    /// body(parts) with both halves at once.
+    /// Calls body(parts) with both halves at once.
     template <class Body>
     void in_halves(const Box& box, bool vertical_cut, int floor, const Body& body) {
         const auto halves = halves_of(box, vertical_cut, floor);
         in_parts(box, halves ? std::span<const Box>(*halves) : std::span<const Box>(), body);
     }
-    /// body(parts); where there are none, or no polynomial came out of them, one block without.
+    /// Calls body(parts); where there are none, or no polynomial came out of them, leaves one block without.
     template <class Body>
     void in_parts(const Box& box, std::span<const Box> parts, const Body& body) {
         if (parts.empty()) return leave(box);
         unless_left(box, [&] { body(parts); });
     }
-    /// A block that gets no polynomial from `body` is left as a whole.
+    /// Calls body(); a block that gets no polynomial from it is left as a whole.
     template <class Body>
     void unless_left(const Box& box, const Body& body) {
         if (!is_block(box))

@@ -19,12 +19,12 @@ inline double length(double x, double y) {
 
 }  // namespace plan_detail
 
-/// Magnitudes of the Taylor coefficients of degree K over a box, one per power of the second variable:
+/// The magnitudes of the Taylor coefficients of degree K over a box, one per power of the second variable:
 /// |remainder of the polynomial of degree K - 1| <= sum_j c[j] hx^(K-j) hy^j at offsets up to (hx, hy).
 template <int K>
 struct Remainder {
     double c[K + 1] = {};
-    double middle[K + 1] = {};  ///< of the coefficients' middles
+    double middle[K + 1] = {};  ///< magnitudes of the coefficients' middles
 
     template <int N>
     explicit Remainder(const Jet<Interval, N>& jet) {
@@ -35,7 +35,7 @@ struct Remainder {
             middle[j] = std::fabs(0.5 * (a.lo + a.hi));
         }
     }
-    /// Over two boxes.
+    /// The larger of two remainders, over two boxes.
     static Remainder larger(Remainder a, const Remainder& b) {
         for (int j = 0; j <= K; ++j) {
             a.c[j] = rounded_detail::larger(a.c[j], b.c[j]);
@@ -44,7 +44,7 @@ struct Remainder {
         return a;
     }
     double over(double hx, double hy) const { return sum(c, hx, hy); }
-    /// What may be left of it over a much smaller box.
+    /// The part of the remainder that may be left over a much smaller box.
     double about(double hx, double hy) const { return sum(middle, hx, hy); }
 
   private:
@@ -59,13 +59,13 @@ struct Remainder {
     }
 };
 
-/// What rounding to double does to a map's Taylor polynomials, of degree 4 at most: a bound of its sum over
-/// all coefficients, and of the coefficients themselves.
+/// The rounding to double of a map's Taylor polynomials, of degree 4 at most: a bound of its sum over all
+/// coefficients, and of the coefficients themselves.
 struct TaylorRounding {
     Point<double> error, size;
 };
 
-/// About all points of a box, on neighbourhoods of up to the given size.
+/// The rounding of Taylor polynomials about all points of a box, on neighbourhoods of up to the given size.
 template <class Map>
 TaylorRounding taylor_rounding(const Map& map, const Interval& x, const Interval& y, double half_width,
                                double half_height, const typename Map::Local& local) {
@@ -93,8 +93,8 @@ struct EconomizedCubic {
     }
 };
 
-/// The same of degree 2, c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2, with the products of degree 3
-/// dropped as well.
+/// The polynomial of degree 2 nearest to such a cubic, c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t +
+/// c[5] t^2, with the products of degree 3 dropped as well.
 struct Economized {
     double c[6];
     double error;

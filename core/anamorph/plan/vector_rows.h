@@ -6,7 +6,8 @@
 
 namespace anamorph {
 
-/// Rows [begin, end) of a block by map.exact_row(x, y, count, to_x, to_y, piece), which gives the points (x + i, y).
+/// Finds rows [begin, end) of a block by map.exact_row(x, y, count, to_x, to_y, piece), which gives the
+/// points (x + i, y).
 template <class Map>
 void exact_rows_by_vectors(const Map& map, const Block& block, int begin, int end, const DoubleRows& to) {
     for (int row = begin; row < end; ++row) {

@@ -19,20 +19,21 @@ namespace anamorph {
 /// The sizes, as seen from the centre, below which parts of shadows are neglected.
 struct ShadowScale {
     double per_radian = 1;  ///< texels per radian
-    /// In texels: narrower strips of light or shadow are neglected, and a narrower triangle is lit or hidden as its middle is.
+    /// The least width, in texels, of strips of light or shadow that count; a narrower triangle is lit or
+    /// hidden as its middle is.
     double thin = 0;
     double on_plane = 0;  ///< a ray as near to a plane as this, relative to its length, lies in it
 };
 
-/// How much of a triangle is in shadows.
+/// The part of a triangle that is in shadows.
 struct ShadowCover {
-    /// How much of the triangle is hidden.
+    /// The share of the triangle that is hidden.
     enum Share {
         lit,     ///< none of it is hidden
         hidden,  ///< all of it is hidden
         both     ///< some of it is hidden
     };
-    Share share = lit;  ///< what there is of shadows
+    Share share = lit;  ///< the share that shadows hide
     /// Weights of a point within the triangle where its share is both, a corner of a shadow if there is one.
     glm::dvec3 corner{1. / 3};
     bool has_corner = false;  ///< is `corner` a corner of a shadow?
@@ -42,8 +43,8 @@ struct ShadowCover {
 /// Triangles that hide what is behind them from a point.
 class Occluders {
   public:
-    /// Nothing as near to a point as this, relative to its distance from the centre, hides it: a surface does not hide
-    /// itself, nor what touches it.
+    /// The distance from a point, relative to its distance from the centre, within which nothing hides it: a
+    /// surface does not hide itself, nor what touches it.
     static constexpr double kTouching = 0x1p-16;
 
     /// `corners`: three for each triangle. Triangles that are not finite, or seen edge-on, hide nothing.
@@ -56,7 +57,7 @@ class Occluders {
     /// Finds the first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
     /// Stretches shorter than `hair` do not count.
     double border(const glm::dvec3& a, const glm::dvec3& b, double hair, const ShadowScale& scale) const;
-    /// How much of a triangle is in shadows.
+    /// Finds the part of a triangle that is in shadows.
     ShadowCover cover(const std::array<glm::dvec3, 3>& triangle, const ShadowScale& scale) const;
 
     /// A triangle that hides a point, of ray r from the centre, if normals[k] . r >= 0 for its three sides and

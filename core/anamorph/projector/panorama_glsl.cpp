@@ -47,7 +47,7 @@ std::string piece_function(const Chart& chart, int piece, const std::string& nam
            ";\n  return " + seen.written() + " > 0.0 && " + on.written() + " >= 0.0;\n}\n";
 }
 
-/// As Chart::piece_of() chooses.
+/// The text that chooses a piece as Chart::piece_of() does.
 std::string choice_of_piece(const Chart& chart) {
     std::string text = "  int piece = 0;\n  float most = -3.0, along;\n";
     for (std::size_t i = 0; i < chart.pieces().size(); ++i) {

@@ -12,7 +12,7 @@
 
 namespace anamorph {
 
-/// Where a projector stands, and how it is turned.
+/// The position of a projector, and its orientation.
 struct ProjectorPose {
     glm::dvec3 position{0.0};        ///< the centre of the panorama, in the scene
     glm::dvec3 direction{0, 0, -1};  ///< direction of the panorama's middle; any length
@@ -23,7 +23,7 @@ struct ProjectorPose {
 /// where the position is not finite, where direction or up is 0 or not finite, and where they are parallel.
 glm::dmat3 frame_of(const ProjectorPose& pose);
 
-/// What a point of the scene receives from a projector.
+/// The kinds of what a point of the scene receives from a projector.
 enum class Received {
     texel,         ///< a point of the panorama
     nothing,       ///< the direction of the point is not in the panorama

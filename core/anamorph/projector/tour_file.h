@@ -21,7 +21,7 @@
 
 namespace anamorph {
 
-/// Where a view looks, and how wide it is; what is not said stays as it was.
+/// The direction of a view, and its width; what is empty stays as it was.
 struct TourView {
     std::optional<double> yaw = {}, pitch = {}, fov = {};
 };
@@ -30,7 +30,7 @@ struct TourView {
 struct HotSpot {
     double yaw = 0, pitch = 0, radius = 0;
     std::size_t target = 0;  ///< index of a panorama
-    TourView view = {};      ///< by default the target's own
+    TourView view = {};      ///< by default the target's own view
 };
 
 struct TourPanorama {
@@ -38,16 +38,16 @@ struct TourPanorama {
     TourView view = {};
     std::vector<HotSpot> spots = {};
 
-    /// The spot that a direction is in: of several the one whose centre is nearest. None is -1.
+    /// The spot that a direction is in, of several the one whose centre is nearest; -1: none.
     int spot_at(double yaw, double pitch) const;
 };
 
-/// At least one panorama; the first is where the tour begins.
+/// A tour of at least one panorama; the first is where it begins.
 using Tour = std::vector<TourPanorama>;
 
 inline constexpr std::size_t kMostTourPanoramas = 4096, kMostHotSpots = 1024;
 
-/// Throws Error naming the file and the panorama.
+/// Parses a tour. Throws Error naming the file and the panorama.
 Tour parse_tour_json(std::string_view text, std::string_view name);
 
 /// The angle between two directions, in degrees.

@@ -11,7 +11,8 @@
 
 namespace anamorph::surface {
 
-/// Which channel of a picture is alpha, -1 where none is, and whether colours have been multiplied with it.
+/// The channel of a picture that is alpha, -1 where none is; and whether colours have been multiplied with
+/// it.
 struct AlphaChannel {
     int channel = -1;
     bool multiplied = true;
@@ -20,11 +21,12 @@ struct AlphaChannel {
     bool straight() const { return exists() && !multiplied; }
 };
 
-/// `over` lies on `under`, both multiplied with their alpha: over + (1 - alpha) under. What has no alpha is opaque, where
-/// `share` of the pixel is covered.
+/// Lays `over` on `under`, both multiplied with their alpha: over + (1 - alpha) under. What has no alpha is
+/// opaque, where `share` of the pixel is covered.
 void lay_over(const float* over, const float* under, int channels, int alpha, float share, float* to);
 
-/// The color of each pixel of a screen, multiplied with its alpha. One per thread. Keeps references to its arguments.
+/// Gives the color of each pixel of a screen, multiplied with its alpha. One per thread. Keeps references to
+/// its arguments.
 class Backdrop {
   public:
     /// `color` is in the channels of the picture that lies in front, `front`, as that says of its alpha; channels that it
@@ -35,7 +37,7 @@ class Backdrop {
     Backdrop(const Backdrop&) = delete;
     Backdrop& operator=(const Backdrop&) = delete;
 
-    /// `channels` floats. False where the picture could not be read.
+    /// Writes the `channels` floats of a pixel. False where the picture could not be read.
     bool at(int x, int y, float* pixel);
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From space to the pixels of a screen (Oka 1987, section 2: p).
+// The way from space to the pixels of a screen (Oka 1987, section 2: p).
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -29,7 +29,7 @@ class Camera {
 
     const Size& screen() const { return m_screen; }
     bool perspective() const { return m_perspective; }
-    /// Pixels per unit of space, perspective: at a distance of 1.
+    /// Pixels per unit of space, in perspective those at a distance of 1.
     double focal() const { return m_focal; }
     /// The distance of the near plane: points less far ahead are not seen.
     double near() const { return m_near; }
@@ -38,7 +38,7 @@ class Camera {
     const glm::dmat3& matrix() const { return m_matrix; }
     const glm::dvec3& offset() const { return m_offset; }
     glm::dvec3 in_frame(const glm::dvec3& object) const { return m_matrix * object + m_offset; }
-    /// A vector of the object, turned into that frame.
+    /// A vector of the object, turned into the camera's frame.
     glm::dvec3 turned(const glm::dvec3& vector) const { return m_matrix * vector; }
 
     /// A direction of the camera's frame, in space.

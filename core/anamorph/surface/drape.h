@@ -29,8 +29,8 @@ enum class DrapeShading {
     phong     ///< normals at the corners of facets, interpolated
 };
 
-/// Lights at infinity, and what they do to a surface that is lit alike on both sides:
-/// color (ambient + diffuse sum |n . l|) + specular sum (n . h)^shininess, where a light is on the viewer's side.
+/// Lights at infinity, and the numbers by which a surface, lit alike on both sides, reflects them: color
+/// (ambient + diffuse sum |n . l|) + specular sum (n . h)^shininess, where a light is on the viewer's side.
 struct DrapeLighting {
     DrapeShading shading = DrapeShading::none;
     std::vector<glm::dvec3> lights = {{0, 0, 1}};  ///< directions towards them, of length 1
@@ -40,29 +40,30 @@ struct DrapeLighting {
 /// How the surface is made of facets.
 enum class DrapeScheme {
     automatic,  ///< patches as large as the tolerance allows, without cracks
-    exact,  ///< the same, and each pixel's point is that of the surface itself but for rounding (polish.h)
+    exact,  ///< as automatic, and each pixel's point is that of the surface itself but for rounding (polish.h)
     oka,    ///< blocks of the picture as parallelograms, nearer ones over farther ones (oka.h)
-    oka_z,  ///< the same with a depth for each pixel
+    oka_z,  ///< as oka, with a depth for each pixel
 };
 
-/// What is drawn beside what every picture can show (Output): the depth ahead of the camera, infinite where nothing is
-/// seen; the surface's unit normal on the viewer's side, in space; the number of the patch; the share of the pixel in which
-/// anything is seen, by which colours of the same filter are faded; whether anything is seen in its middle.
+/// The outputs of a drape beside those that every picture can show (Output): the depth ahead of the camera,
+/// infinite where nothing is seen; the surface's unit normal on the viewer's side, in space; the number of
+/// the patch; the share of the pixel in which anything is seen, by which colours of the same filter are
+/// faded; whether anything is seen in its middle.
 enum class DrapeOutput { shared, depth, normal, patch, coverage, seen };
 
 /// How a drape is drawn.
 struct DrapeOptions {
     DrapeScheme scheme = DrapeScheme::automatic;
     double tol = 0.125;               ///< pixels on the screen; of oka and oka_z, what comes out
-    double block = 8, overlap = 0.5;  ///< OkaBlocks
+    double block = 8, overlap = 0.5;  ///< as in OkaBlocks
     Filter filter = Filter::antialias;
     Wrap wrap = Wrap::clamp;
     Output output = Output::color;
     DrapeOutput own = DrapeOutput::shared;
     DrapeLighting lighting;
-    std::vector<float> background;  ///< channel by channel; 0 for those that it lacks, and 1 for alpha
+    std::vector<float> background;  ///< channel by channel; 0 for channels that it lacks, and 1 for alpha
     int alpha = -1;                 ///< the channel of the picture's alpha, multiplied in or not, or -1
-    int backdrop_alpha = -1;        ///< the same of the picture behind
+    int backdrop_alpha = -1;        ///< the channel of alpha of the picture behind, or -1
 };
 
 /// A surface's patches, and room to draw in, which views of it share.
@@ -78,20 +79,21 @@ struct SharedTree {
 /// A surface draped with a picture, ready to draw any box of the screen from any number of threads.
 class Drape {
   public:
-    /// `picture`: its size in pixels. Throws Error where tol is less than the screen's grid allows, or takes too many
-    /// patches.
+    /// Drapes a surface. `picture`: its size in pixels. Throws Error where tol is less than the screen's grid
+    /// allows, or takes too many patches.
     Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
           const DrapeOptions& options);
 
     /// The largest bound of what the camera sees, or nearly so, in pixels of the screen, and how much is exact.
     Reached reached(const ParallelFor& parallel_for) const;
     double max_error() const { return m_map->max_error(); }
-    /// Patches that the camera sees, or nearly so.
+    /// The number of patches that the camera sees, or nearly so.
     std::size_t patches() const { return m_map->patches(); }
 
-    /// Pixels within the surface that show nothing. None where facets share their edges; of the paper's blocks, those where
-    /// facets within kCoverTol show something, also at all eight pixels around, which takes as long as drawing does. Nothing
-    /// where the screen has more than kMostCounted pixels or such facets would be too many.
+    /// The number of pixels within the surface that show nothing. None where facets share their edges; of the
+    /// paper's blocks, those where facets within kCoverTol show something, also at all eight pixels around,
+    /// which takes as long as drawing does. Nothing where the screen has more than kMostCounted pixels or
+    /// such facets would be too many.
     std::optional<int> holes(const ParallelFor& parallel_for) const;
     static constexpr double kCoverTol = 0.125;
     static constexpr int kMostCounted = 1 << 24;
@@ -107,7 +109,7 @@ class Drape {
 
     Spot spot(const SeenPixels& pixels, int x, int y) const;
     void weigh(Spot& spot, double x, double y) const;
-    /// What the pixels of a picture in colour are made of.
+    /// The layers that the pixels of a picture in colour are made of.
     struct Layers;
     bool draw_edges(const Layers& layers, const Box& box, const Canvas& canvas,
                     const ParallelFor& parallel_for) const;
@@ -131,7 +133,7 @@ class Drape {
     std::shared_ptr<SharedTree> m_surface;
     DrapeOptions m_options;
     std::shared_ptr<const DrapeMap> m_map;
-    std::vector<Lit> m_lit;  ///< the corners, where they are needed
+    std::vector<Lit> m_lit;  ///< lit corners, where they are needed
     Picture m_picture;
 };
 

@@ -94,7 +94,7 @@ const Facets& DrapeMap::facets() const {
     return m_room->facets;
 }
 
-/// Of the leaves.
+/// The bounds of the patches.
 const std::vector<double>& DrapeMap::bounds(const ParallelFor& parallel_for) const {
     std::call_once(m_bounded, [&] {
         constexpr std::size_t kAtOnce = 256;
@@ -361,7 +361,7 @@ Jacobian DrapeMap::jacobian(double x, double y, int) const noexcept {
     return jacobian_of(facets().facets[static_cast<std::size_t>(seen)], x, y);
 }
 
-/// Of its projective map.
+/// The derivative of the facet's projective map.
 Jacobian DrapeMap::jacobian_of(const Facet& facet, double x, double y) const {
     const double unit = std::ldexp(1.0, facets().grid_bits);
     const double px = (x - width() / 2.0) * unit, py = (y - height() / 2.0) * unit;

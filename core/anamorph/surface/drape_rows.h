@@ -8,24 +8,24 @@
 
 namespace anamorph::surface {
 
-/// Degrees, of cylinder, sphere and torus: the part of a turn that is covered.
+/// The part of a turn that a cylinder, sphere or torus covers, in degrees.
 inline constexpr NumberRow kDrapeAngleRow{"drape_angle", 180, 0.01, 360};
-/// Radius of a torus's tube.
+/// The radius of a torus's tube.
 inline constexpr NumberRow kDrapeTubeRow{"drape_tube", 0.2, 0.001, 1000};
-/// Of waves and ripples.
+/// The amplitude of waves and ripples.
 inline constexpr NumberRow kDrapeAmplitudeRow{"drape_amplitude", 0.05, -1000, 1000};
 inline constexpr NumberRow kDrapeWavelengthRow{"drape_wavelength", 0.5, 0.01, 1000};
 inline constexpr NumberRow kDrapePhaseRow{"drape_phase", 0, -1000, 1000};
-/// Degrees, counterclockwise from the x axis.
+/// The direction in degrees, counterclockwise from the x axis.
 inline constexpr NumberRow kDrapeDirectionRow{"drape_direction", 0, -360, 360};
-/// How far a page is turned.
+/// The part to which a page is turned.
 inline constexpr NumberRow kDrapeTurnRow{"drape_turn", 0.5, 0, 1};
-/// Pixels on the screen.
+/// The tolerance in pixels on the screen.
 inline constexpr NumberRow kDrapeTolRow{"drape_tol", 0.125, 0.001, 1000};
-/// Of filters: half the height of what is seen without perspective, in units of space.
+/// Half the height of what a filter shows without perspective, in units of space.
 inline constexpr NumberRow kDrapeParallelScaleRow{"drape_parallel_scale", 0.5, 1e-6, 1e6};
 
-/// By default that of the surface.
+/// The radius; by default that of the surface.
 inline constexpr NumberRow kDrapeRadiusRow{"drape_radius", NAN, 0.001, 1000};
 
 }  // namespace anamorph::surface

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that a silhouette, a border of the surface or a seam goes through: what they show, by samples.
+// The pixels that a silhouette, a border of the surface or a seam goes through, and what samples of them
+// show.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,9 @@ namespace anamorph::surface {
 
 /// A part of a pixel that shows one patch.
 struct EdgePart {
-    std::uint32_t facet;  ///< one of the patch's
+    std::uint32_t facet;  ///< one of the patch's facets
     double x, y, u, v;    ///< the mean of its samples, on the screen and in 0 to 1 on the picture
-    double share;         ///< of the pixel
+    double share;         ///< share of the pixel
 };
 
 /// A pixel with an edge; what its parts lack to 1 shows nothing.
@@ -29,10 +30,10 @@ struct EdgePixel {
     }
 };
 
-/// Samples of an edge pixel either way.
+/// The number of samples of an edge pixel either way.
 inline constexpr int kEdgeSamples = 8;
 
-/// The edge pixels of `part` of a region.
+/// Finds the edge pixels of `part` of a region.
 std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, const Box& part);
 
 }  // namespace anamorph::surface

@@ -16,18 +16,18 @@
 
 namespace anamorph::surface {
 
-/// What is seen at the pixels of a box, row by row.
+/// The points of a surface that are seen at the pixels of a box, row by row.
 struct SeenPixels {
     static constexpr double kNone = -1;
 
     Box box;
     std::ptrdiff_t stride = 0;
-    std::vector<double> nearness;  ///< or empty, where that of a facet says it
-    std::vector<double> u, v;      ///< in 0 to 1
-    std::vector<double> facet;     ///< its number, or kNone
-    std::vector<double> bound;     ///< of points that have one of their own (DrapeMap), else empty
+    std::vector<double> nearness;  ///< empty where that of a facet says it
+    std::vector<double> u, v;      ///< from 0 to 1
+    std::vector<double> facet;     ///< number of the facet, or kNone
+    std::vector<double> bound;     ///< bounds of points that have one of their own (DrapeMap), else empty
 
-    /// From now on those of this box, in which nothing is seen. `with_nearness`: each pixel has one.
+    /// Makes these the pixels of a box, in which nothing is seen. `with_nearness`: each pixel has one.
     void clear(const Box& pixels, bool with_nearness = true);
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>((y - box.y0) * stride + x - box.x0);
@@ -37,25 +37,25 @@ struct SeenPixels {
 /// Finds facets by the squares of the screen that they meet.
 class FacetRaster {
   public:
-    /// Of the room's facets, and in it.
+    /// Sorts the room's facets by squares, in the room.
     FacetRaster(FacetRoom& room, const Size& screen, int square);
 
-    /// What is seen in a box within one square and the pixels next to it. `times`: pixels of the box are so many times
-    /// finer than those of the screen, 1 to 8.
+    /// Draws what is seen in a box within one square and the pixels next to it. `times`: pixels of the box
+    /// are so many times finer than those of the screen, 1 to 8.
     void draw(const Box& box, SeenPixels& seen, int times = 1) const;
 
-    /// Takes a facet, a pixel that it covers, seen or not, and the point of the picture there.
+    /// Receives a facet, a pixel that it covers, seen or not, and the point of the picture there.
     using Covered = std::function<void(std::uint32_t facet, int x, int y, double u, double v)>;
-    /// All facets at all pixels of such a box.
+    /// Gives `covered` all facets at all pixels of a box as draw() takes it.
     void each_covered(const Box& box, int times, const Covered& covered) const;
 
   private:
     /// The pixels whose centres a facet may cover.
     Box pixels_of(const Facet& facet, int times) const;
-    /// body(facet) for those that may meet a box.
+    /// Calls body(facet) for the facets that may meet a box.
     template <class Body>
     void each_near(const Box& box, int times, const Body& body) const;
-    /// A facet's functions from the corner of a part of its pixels on. False where it has no area.
+    /// Sets up a facet's functions from the corner of a part of its pixels on. False where it has no area.
     bool set_up(std::uint32_t facet, const Box& part, int times, simd::FacetSetup& setup) const;
 
     const Facets& m_facets;

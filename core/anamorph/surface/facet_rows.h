@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles drawn to planes of points: which pixel's centre lies in which of them, nearest first.
+// Draws triangles to planes of points: which pixel's centre lies in which of them, nearest first.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@ namespace anamorph::surface::simd {
 /// whose e_i are all at least `least_i` is in it. There its nearness is sum e_i nearness_i, and its point
 /// (sum e_i u_i, sum e_i v_i) / sum e_i weight_i.
 struct FacetSetup {
-    double e[3];               ///< at the first pixel of the box it is drawn in
+    double e[3];               ///< e_i at the first pixel of the box it is drawn in
     double right[3], down[3];  ///< steps from pixel to pixel
     double least[3];           ///< 1, or 0 where pixels on the edge belong to it
     double nearness[3], weight[3], u[3], v[3];
     double id;
 };
 
-/// A box of pixels; rows have room for 16 more, which are not changed.
+/// The planes of a box of pixels; rows have room for 16 more, which are not changed.
 struct FacetPlanes {
     double *nearness, *u, *v, *id;
     std::ptrdiff_t stride;

@@ -31,14 +31,14 @@ namespace anamorph::surface {
 
 /// A corner on the screen's grid.
 struct FacetCorner {
-    double x, y;      ///< in units of the grid, from the middle of the screen: integers
-    double weight;    ///< Camera::weight
+    double x, y;      ///< position in units of the grid, from the middle of the screen: integers
+    double weight;    ///< as in Camera::weight
     double nearness;  ///< linear on the screen; greater is nearer
     double u, v;
 };
 
-/// (b - a) x (p - a), the function of the edge from a to b, of a point of the grid: positive to one side of it; where x
-/// and y are integers, one itself, without rounding.
+/// The function (b - a) x (p - a) of the edge from a to b at a point p = (x, y) of the grid: positive to one
+/// side of it; where x and y are integers, one itself, without rounding.
 inline double edge_function(const FacetCorner& a, const FacetCorner& b, double x, double y) {
     return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
@@ -52,13 +52,13 @@ struct Facet {
 /// A patch that is drawn.
 struct FacetLeaf {
     std::int32_t patch;
-    double bound;       ///< of the distance on the screen, in pixels; infinite where it is not known
-    double by_u, by_v;  ///< pixels on the screen per unit of u and of v: at most
-    /// How far ahead of the camera the patch may lie.
+    double bound;       ///< bound of the distance on the screen, in pixels; infinite where it is not known
+    double by_u, by_v;  ///< the most pixels on the screen per unit of u and of v
+    /// The least and the largest depth ahead of the camera that the patch may have.
     double nearest = -HUGE_VAL, farthest = HUGE_VAL;
 };
 
-/// What a camera sees of a surface.
+/// The part of a surface that a camera sees.
 struct Facets {
     int grid_bits = 0;          ///< corners lie on multiples of 2^-bits pixels
     bool inverse_depth = true;  ///< nearness is 1 over the depth; else less the depth
@@ -67,7 +67,7 @@ struct Facets {
     std::vector<FacetLeaf> leaves;
 };
 
-/// What is made of a view, and room to make it in, used again for other views.
+/// The facets of a view, and room to make them in, used again for other views.
 struct FacetRoom {
     /// The corners and sides of a leaf's patch.
     struct Outline {
@@ -91,23 +91,24 @@ struct FacetRoom {
     std::vector<std::uint32_t> lists;
 };
 
-/// No coordinate of a corner is larger: an edge's function, a difference of two products of differences, stays below
-/// 2^52, and so do its steps.
+/// The largest coordinate of a corner: an edge's function, a difference of two products of differences, stays
+/// below 2^52, and so do its steps.
 inline constexpr double kMostGrid = 0x1p24;
-/// The grid of a screen: so fine that an edge's function of a pixel is an integer that double holds.
+/// The bits of the grid of a screen: so fine that an edge's function of a pixel is an integer that double
+/// holds.
 int grid_bits_of(const Size& screen);
-/// How far the grid moves a point: pixels.
+/// The farthest that the grid moves a point, in pixels.
 double grid_error(int bits);
 
 /// The share of a tolerance that is left to points in float (DrapeMap).
 inline constexpr double kFloatShare = 1.0 / 64;
 
-/// A tolerance takes more patches than are made.
+/// Thrown where a tolerance takes more patches than are made.
 class TooManyPatches final : public Error {
   public:
     TooManyPatches(double tol, std::size_t most, const std::string& rule = "");
 
-    std::size_t most;  ///< that are made
+    std::size_t most;  ///< the most patches that are made
 };
 
 /// Cuts what the camera sees so that every bound, with its share for points in float, is at most `tol` pixels. Throws

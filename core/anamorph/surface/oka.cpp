@@ -149,7 +149,7 @@ double quick_bound_of(const OkaBlock& map, const DrapedSurface& surface, const C
     return size;
 }
 
-/// The same, part by part.
+/// The largest error of a block's map on the screen, in pixels, part by part.
 double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
     if (!is_whole(map, surface, h, k)) return HUGE_VAL;
     const Taylor off = off_centre(map, surface, camera);
@@ -208,7 +208,7 @@ void see_grid(const DrapedSurface& surface, const Camera& camera, std::span<cons
     }
 }
 
-/// Of u and of v; at most all of the picture.
+/// The sides of a block in u and in v; at most all of the picture.
 glm::dvec2 sides_of(const Size& picture, const OkaBlocks& blocks) {
     return {std::min(1.0, blocks.side / picture.width), std::min(1.0, blocks.side / picture.height)};
 }

@@ -44,7 +44,7 @@ struct OkaRoom {
     };
 
     std::vector<simd::Parallelogram> blocks;
-    std::vector<Squares> squares;  ///< of the blocks and the pixels around them
+    std::vector<Squares> squares;  ///< squares of the blocks and the pixels around them
     std::vector<std::uint32_t> keys, order, sorted, lists;
     std::vector<std::size_t> first;
     std::vector<double> columns, rows;

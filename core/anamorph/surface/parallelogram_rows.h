@@ -12,20 +12,20 @@ namespace anamorph::surface::simd {
 
 /// A block of a picture on the screen.
 struct Parallelogram {
-    double x, y, z;             ///< its centre, pixels from the middle of the screen, and depth there
+    double x, y, z;             ///< the centre, pixels from the middle of the screen, and the depth there
     double u_x, u_y, v_x, v_y;  ///< what u and v gain from pixel to pixel
     double z_u, z_v;            ///< what the depth gains by u and by v
-    std::int32_t column, row;   ///< of the block
-    Box pixels;                 ///< of the screen, that it may cover
+    std::int32_t column, row;   ///< column and row of the block
+    Box pixels;                 ///< pixels of the screen that it may cover
 };
 
-/// All blocks have their centres at ((column + 1/2) side_u, (row + 1/2) side_v), reach as far as half_u and half_v from
-/// there, but not beyond 0 to 1.
+/// The grid of all blocks: they have their centres at ((column + 1/2) side_u, (row + 1/2) side_v), reach as
+/// far as half_u and half_v from there, but not beyond 0 to 1.
 struct ParallelogramGrid {
     double side_u, side_v, half_u, half_v;
 };
 
-/// Pixels of a box of a screen of width x height, whose side is 1 / `times` of those of the screen.
+/// The pixels of a box of a screen of width x height, whose side is 1 / `times` of those of the screen.
 struct ParallelogramView {
     Box box;
     int width, height, times;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a point of a surface that is seen near a place on the screen to the point that is seen there.
+// Leads from a point of a surface that is seen near a place on the screen to the point that is seen there.
 #pragma once
 
 #include "anamorph/surface/camera.h"
@@ -12,16 +12,17 @@ class PointPolish {
   public:
     PointPolish(const DrapedSurface& surface, const Camera& camera) : m_surface(surface), m_camera(camera) {}
 
-    /// A point near by.
+    /// A point that was found.
     struct Polished {
         double u, v;
-        double nearness;  ///< FacetCorner::nearness
-        double bound;     ///< of the distance on the screen from where it is seen to (x, y), in pixels
+        double nearness;  ///< as FacetCorner::nearness
+        double bound;     ///< bound of the distance on the screen from where it is seen to (x, y), in pixels
     };
-    /// The point that is seen at (x, y), pixels from the middle of the screen, from one that is seen near by. The bound is
-    /// infinite where none is found, or where it is not certain that the surface between both does not fold: there, with
-    /// g' the derivatives of the place on the screen over the box that both span and Y = g'^-1 at the point, |1 - Y g'| < 1
-    /// (Krawczyk 1969), so that no other point of the box is seen at (x, y).
+    /// Finds the point that is seen at (x, y), pixels from the middle of the screen, from one that is seen
+    /// near by. The bound is infinite where none is found, or where it is not certain that the surface
+    /// between both does not fold: there, with g' the derivatives of the place on the screen over the box
+    /// that both span and Y = g'^-1 at the point, |1 - Y g'| < 1 (Krawczyk 1969), so that no other point of
+    /// the box is seen at (x, y).
     Polished polish(double x, double y, double u, double v) const noexcept;
 
   private:

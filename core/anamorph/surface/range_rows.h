@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far vectors reach along axes, where no more is known of them than a range.
+// Bounds the reach of vectors along axes, where no more is known of them than a range.
 #pragma once
 
 namespace anamorph::surface::simd {
@@ -14,7 +14,7 @@ struct Axes {
     double coordinates[3][4];
 };
 
-/// |a . v| for the vectors v of each range and each axis, at most: |a . middle| + |a| . radius.
+/// Bounds |a . v| for the vectors v of each range and each axis: |a . middle| + |a| . radius.
 void reach_along(const Axes& axes, const FloatRange* ranges, int count, double (*reach)[4]);
 
 }  // namespace anamorph::surface::simd

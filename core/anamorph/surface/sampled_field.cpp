@@ -73,7 +73,7 @@ struct Net {
         for (std::size_t i = 0; i < columns; ++i) to_part(n.values.data() + i, 4, rows - 1, y0, y1);
         return n;
     }
-    /// Of all coefficients, widened and scaled.
+    /// The hull of all coefficients, widened and scaled.
     Interval hull(double margin, double scale) const {
         double least = HUGE_VAL, most = -HUGE_VAL;
         for (std::size_t j = 0; j < rows; ++j)

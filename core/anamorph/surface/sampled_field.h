@@ -22,22 +22,23 @@
 
 namespace anamorph::surface {
 
-/// Thread safe.
+/// A field given by the texels of a picture. Thread safe.
 class SampledField {
   public:
     static constexpr std::int64_t kMostTexels = std::int64_t{1} << 24;
     static constexpr double kMostMagnitude = 1e12;
 
-    /// `texels`: row by row, `channels` numbers each, 1 to 3. What is beyond kMostMagnitude counts as no number.
+    /// Makes a field of `texels`: row by row, `channels` numbers each, 1 to 3. What is beyond kMostMagnitude
+    /// counts as no number.
     SampledField(const std::vector<float>& texels, const Size& size, int channels);
 
     const Size& size() const { return m_size; }
     int channels() const { return m_channels; }
-    /// Texels that are no finite numbers, and the first of them.
+    /// The number of texels that are no finite numbers; first_missing() is the first of them.
     std::size_t missing_texels() const { return m_missing_texels; }
     const Point<int>& first_missing() const { return m_first_missing; }
 
-    /// The numbers at (u, v); NaN in a missing cell.
+    /// Reads the numbers at (u, v); NaN in a missing cell.
     template <class T>
     void read(const T& u, const T& v, T* to) const {
         const auto place = [](const T& t, int size) {
@@ -57,7 +58,7 @@ class SampledField {
             }
         }
     }
-    /// What read() in double makes of a point, and what is lost there.
+    /// The numbers that read() in double gives at the middle of u and v, give or take their rounding.
     void read(const Interval& u, const Interval& v, Interval* to) const;
     /// Encloses the Taylor coefficients at every point of the box that u and v, the variables themselves, run over, but for
     /// what is missing.
@@ -79,7 +80,7 @@ class SampledField {
     struct Part {
         double x0, y0, x1, y1;
     };
-    /// All cells, in boxes of one size.
+    /// The hulls of all cells, in boxes of one size.
     struct Level {
         Range boxes;
         std::vector<Hull> hulls;         ///< box by box, channel by channel
@@ -91,7 +92,7 @@ class SampledField {
         }
     };
 
-    /// w of sum_i w_i texel_i: hermite_basis of two texels and the secants there.
+    /// The weights w of sum_i w_i texel_i: hermite_basis of two texels and the secants there.
     template <class T>
     static std::array<T, 4> weights(const T& s) {
         const std::array<T, 4> h = hermite_basis(s);
@@ -116,7 +117,7 @@ class SampledField {
     Part part_of(int column, int row, const Interval& u, const Interval& v) const;
     void add_cell(int column, int row, const Part& part, Hull* hulls) const;
     void add_box(const Level& level, int x, int y, Hull* hulls) const;
-    /// The finest level on which a range has few boxes, and these; null for cells themselves.
+    /// The finest level on which a range has few boxes, with the range in these; null for cells themselves.
     const Level* level_of(Range& range) const;
 
     Size m_size;
@@ -124,8 +125,8 @@ class SampledField {
     std::vector<float> m_texels;
     std::size_t m_missing_texels = 0;
     Point<int> m_first_missing{0, 0};
-    std::vector<Certainty> m_missing;  ///< cell by cell, where there are any
-    double m_rounding = 0;             ///< of read() in double
+    std::vector<Certainty> m_missing;  ///< cell by cell, where any is missing
+    double m_rounding = 0;             ///< rounding of read() in double
     std::vector<Level> m_levels;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a camera sees a part of a surface.
+// The place on the screen where a camera sees a part of a surface.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace anamorph::surface {
 
-/// Taylor coefficients of the place on the screen, in pixels from its middle, of what has those of `range`. Infinite where
-/// a part may not be in front of the camera.
+/// The Taylor coefficients of the place on the screen, in pixels from its middle, of a part of a surface that
+/// has those of `range`. Infinite where a part may not be in front of the camera.
 ///
 /// With X and Z those of the camera's frame and s near X / Z, a place is s + (X - s Z) / Z, where X - s Z is a sum of what
 /// `range` says of each coordinate of space once: X and Z by themselves would each be as wide as that makes them.

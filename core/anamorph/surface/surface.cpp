@@ -92,7 +92,7 @@ template <class T>
 T influence_of(const Deformation& d, const T& u, const T& v) {
     return influence(d, u, v);
 }
-/// Of the variables u and v themselves.
+/// Encloses influence() where u and v are the variables themselves.
 Jet<Interval, 2> influence_of(const Deformation& d, const Jet<Interval, 2>& u, const Jet<Interval, 2>& v) {
     return d.kernel == DeformationKernel::wendland_c2 ? wendland_range(d, u.value(), v.value())
                                                       : gaussian_range(d, u.value(), v.value());
@@ -201,7 +201,8 @@ struct TextReader {
         z.c[0] = p.z;
         return {x, y, z};
     }
-    /// Of read() in double, over a box: no more than what there is of exact and of rounded points, which one interval holds.
+    /// The rounding of read() in double, over a box: no more than what there is of exact and of rounded
+    /// points, which one interval holds.
     double rounding(const Interval& u, const Interval& v) const {
         using R = Rounded<double>;
         const auto rounded = read_program<3>(formula.point, R(u, 0, 0), R(v, 0, 0));
@@ -402,8 +403,8 @@ std::unique_ptr<SurfacePart> make_part_of(std::size_t which, const SurfaceSum& s
     return std::make_unique<ReadPart<TextReader>>(TextReader{sum.formula.value()});
 }
 
-/// Those that are enabled, checked, with v counted up as it is down here. Differences from a centre are exact near by,
-/// and one from 1 would not be.
+/// The deformations that are enabled, checked, with v counted up as it is down here. Differences from a
+/// centre are exact near by, and one from 1 would not be.
 std::vector<Deformation> enabled(std::vector<Deformation> list) {
     for (Deformation& d : list) {
         check_deformation(d);

@@ -21,29 +21,30 @@
 
 namespace anamorph::surface {
 
-/// Position and its derivatives by u and v.
+/// The position of a point, and its derivatives by u and v.
 struct SurfaceFrame {
     glm::dvec3 position, by_u, by_v;
 };
 
-/// Taylor coefficients of x, y and z over a box of (u, v): position, first and second derivatives.
+/// The Taylor coefficients of x, y and z over a box of (u, v): position, first and second derivatives.
 using SurfaceRange = std::array<Jet<Interval, 2>, 3>;
 
-/// Thread safe.
+/// A surface as a function of (u, v). Thread safe.
 class DrapedSurface {
   public:
     virtual ~DrapedSurface() = default;
     virtual glm::dvec3 position(double u, double v) const noexcept = 0;
-    /// The points of a grid, row by row, (u[i], v[j]): as far from the exact ones as those of position() may be. A point has
-    /// the same bits in every grid, but not those of position().
+    /// Finds the points of a grid, row by row, (u[i], v[j]): as far from the exact ones as those of
+    /// position() may be. A point has the same bits in every grid, but not those of position().
     virtual void positions(std::span<const double> u, std::span<const double> v, glm::dvec3* to) const {
         for (const double t : v)
             for (const double s : u) *to++ = position(s, t);
     }
-    /// How far position() may be from the exact point, coordinate by coordinate, at most.
+    /// The largest distance of position() from the exact point, coordinate by coordinate.
     virtual double rounding(double u, double v) const noexcept = 0;
-    /// The same at any point of a box. It grows with the magnitudes that a formula meets, which are largest at corners; of
-    /// text, whose numbers may be largest anywhere, all points are asked. Infinite where that is not known.
+    /// The largest rounding() at any point of a box. It grows with the magnitudes that a formula meets, which
+    /// are largest at corners; of text, whose numbers may be largest anywhere, all points are asked. Infinite
+    /// where that is not known.
     virtual double rounding(const Interval& u, const Interval& v) const noexcept {
         double most = rounding(u.lo / 2 + u.hi / 2, v.lo / 2 + v.hi / 2);
         for (const double s : {u.lo, u.hi})
@@ -51,7 +52,7 @@ class DrapedSurface {
         return most;
     }
     virtual SurfaceFrame frame(double u, double v) const noexcept = 0;
-    /// As exactly as is known: what errors are measured against.
+    /// The position as exactly as it is known: errors are measured against it.
     virtual std::array<long double, 3> truth(long double u, long double v) const noexcept = 0;
     /// Encloses the Taylor coefficients at every point of the box that is not missing; those of the second degree wherever
     /// they exist. Derivatives may be infinite, and say nothing then.
@@ -62,15 +63,15 @@ class DrapedSurface {
 
 /// The names of surfaces, in the order of surface/shape/list.h.
 const std::vector<std::string>& surface_names();
-/// Names, and what sums have besides: `positions` and `formula`.
+/// The names of surfaces, and those that only sums have: `positions` and `formula`.
 const std::vector<std::string>& all_surface_names();
-/// Has it normals that are once continuously differentiable, along which a relief can be raised?
+/// Does a surface have normals that are once continuously differentiable, along which a relief can be raised?
 bool has_smooth_normals(std::size_t which);
 
 /// A surface as a sum of others (Oka 1987, eq. 4.3), each raised along its own normal, moved by deformations (eq. 4.1).
 struct SurfaceSum {
     struct Part {
-        std::size_t which = 0;  ///< of surface_names(); after the last one `positions`, and then `formula`
+        std::size_t which = 0;  ///< place in surface_names(); after the last `positions`, and then `formula`
         double weight = 1;
         bool operator==(const Part&) const = default;
     };
@@ -78,17 +79,17 @@ struct SurfaceSum {
     SurfaceShape shape = {};
     std::shared_ptr<const SampledField> positions = {};  ///< x, y and z
     std::optional<SpaceFormula> formula = {};
-    std::shared_ptr<const SampledField> heights = {};  ///< of parts that has_smooth_normals() allows
-    double height_scale = 0;                           ///< of those of weight 1
-    std::vector<Deformation> deformations = {};        ///< u and v run from 0 to 1 with v up
+    std::shared_ptr<const SampledField> heights = {};  ///< heights of parts that has_smooth_normals() allows
+    double height_scale = 0;                           ///< scale of the heights of parts of weight 1
+    std::vector<Deformation> deformations = {};        ///< their u and v run from 0 to 1 with v up
 
     bool operator==(const SurfaceSum&) const = default;
 };
 
-/// Throws Error on a deformation that check_deformation refuses.
+/// Makes a sum of surfaces. Throws Error on a deformation that check_deformation refuses.
 std::shared_ptr<const DrapedSurface> make_surface(const SurfaceSum& sum);
 
-/// A single one, with deformations.
+/// Makes a single surface, with deformations.
 std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
                                                   const std::vector<Deformation>& deformations = {});
 

@@ -28,8 +28,8 @@ struct SurfaceCorner {
 
 /// A side of patches, the same one for both that it lies between: they are halved where they like, but a side in one place.
 struct SurfaceSide {
-    std::int32_t middle = -1;  ///< the corner there, or none
-    std::int32_t halves = -1;  ///< the first of two that follow each other, along u or v
+    std::int32_t middle = -1;  ///< the corner in its middle, or none
+    std::int32_t halves = -1;  ///< the first of its halves, which follow each other, along u or v
 };
 
 /// A rectangle of parameters, i / 2^level to (i + 1) / 2^level either way.
@@ -38,13 +38,13 @@ struct SurfacePatch {
 
     std::uint64_t iu = 0, iv = 0;
     std::uint8_t level_u = 0, level_v = 0;
-    bool across = false;            ///< it is halved along u
-    bool missing = false;           ///< there is no surface
-    bool open = false;              ///< there is none of a part, or that is not known
-    std::int32_t children = kNone;  ///< the first of two that follow each other
-    double rounding = 0;            ///< of positions on it, DrapedSurface::rounding
+    bool across = false;            ///< is it halved along u?
+    bool missing = false;           ///< is there no surface?
+    bool open = false;              ///< is there none of a part, or is that not known?
+    std::int32_t children = kNone;  ///< the first of its halves, which follow each other
+    double rounding = 0;            ///< rounding of positions on it, DrapedSurface::rounding
     VectorRange position;
-    simd::FloatRange bends[3];   ///< with the sides h and k: h^2 f_uu / 8, h k f_uv / 4 and k^2 f_vv / 8
+    simd::FloatRange bends[3];   ///< h^2 f_uu / 8, h k f_uv / 4 and k^2 f_vv / 8 with the sides h and k
     simd::FloatRange slopes[2];  ///< f_u and f_v
     /// Corners from the least u and v on, along u first and round; side i is between corners i and i + 1.
     std::array<std::int32_t, 4> corners{}, sides{};
@@ -55,22 +55,22 @@ struct SurfacePatch {
     double side_v() const { return std::ldexp(1.0, -level_v); }
 };
 
-/// Patches are halved when they are asked for. One thread at a time.
+/// A tree of patches, which are halved when they are asked for. One thread at a time.
 class SurfaceTree {
   public:
-    /// Halved so often either way, patches are as small as they get.
+    /// The most times that a patch is halved either way.
     static constexpr int kMostLevels = 48;
 
     explicit SurfaceTree(std::shared_ptr<const DrapedSurface> surface);
 
     const DrapedSurface& surface() const { return *m_surface; }
     const std::shared_ptr<const DrapedSurface>& shared_surface() const { return m_surface; }
-    /// Patch 0 is the whole surface. References last.
+    /// A patch; number 0 is the whole surface. References last.
     const SurfacePatch& patch(std::int32_t index) const {
         const auto i = static_cast<std::size_t>(index);
         return (*m_patches[i / kPage])[i % kPage];
     }
-    /// Asks memory for a patch.
+    /// Prefetches a patch.
     void prefetch(std::int32_t index) const {
         const char* const at = reinterpret_cast<const char*>(&patch(index));
         for (std::size_t line = 0; line < sizeof(SurfacePatch); line += 64) __builtin_prefetch(at + line);
@@ -78,7 +78,8 @@ class SurfaceTree {
     std::size_t size() const { return m_size; }
     const std::vector<SurfaceCorner>& corners() const { return m_corners; }
     const SurfaceSide& side(std::int32_t index) const { return m_sides[static_cast<std::size_t>(index)]; }
-    /// The first of a patch's two halves, or kNone where it is as small as it gets.
+    /// Halves a patch, unless that is done. Returns the first half, or kNone where the patch is as small as
+    /// it gets.
     std::int32_t halves(std::int32_t index);
 
   private:

@@ -27,7 +27,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     ///@{
-    /** As of vtkAnamorphEllipsoidMapper. */
+    /** Properties of the vtkAnamorphEllipsoidMapper. */
     void SetShape(int shape);
     void SetAxesArray(const char* name);
     void SetOrientationArray(const char* name);
@@ -45,7 +45,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public
     void SetTextureName(int i, const char* name);
     ///@}
 
-    /** Nothing: points have the ids that they have in the data. */
+    /** Does nothing: points have the ids that they have in the data. */
     void SetArrayIdNames(const char*, const char*) override {}
 
     int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* input,

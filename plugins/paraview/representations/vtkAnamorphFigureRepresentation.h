@@ -22,7 +22,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphFigureRepresentation : public vt
     vtkAbstractTypeMacro(vtkAnamorphFigureRepresentation, vtkGeometryRepresentation);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** Nothing: a cell's id is that of no point. */
+    /** Does nothing: a cell's id is that of no point. */
     void SetPickable(int) override {}
 
     int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* input,
@@ -32,7 +32,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphFigureRepresentation : public vt
     vtkAnamorphFigureRepresentation();
     ~vtkAnamorphFigureRepresentation() override;
 
-    /// What draws the figures, always the same.
+    /// The filter that draws the figures, always the same.
     virtual vtkAnamorphFigureAlgorithm* GetFilter() = 0;
 
     void UpdateColoringParameters() override;

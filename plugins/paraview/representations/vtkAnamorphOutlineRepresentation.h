@@ -19,7 +19,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphOutlineRepresentation
     vtkTypeMacro(vtkAnamorphOutlineRepresentation, vtkAnamorphFigureRepresentation);
 
     ///@{
-    /** As of vtkAnamorphFigureOutline. */
+    /** Properties of the vtkAnamorphFigureOutline. */
     void SetHidden(int hidden);
     void SetCrossings(bool crossings);
     void SetConnected(bool connected);

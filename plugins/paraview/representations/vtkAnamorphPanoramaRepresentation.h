@@ -34,7 +34,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     void SetPanorama(vtkTexture* panorama);
 
     ///@{
-    /** As of vtkAnamorphPanoramaProjector. */
+    /** Properties of the vtkAnamorphPanoramaProjector. */
     void SetPanoramaProjection(int projection);
     void SetPanoramaFieldOfView(double degrees);
     void SetPanoramaPanniniDistance(double d);
@@ -50,7 +50,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     void SetOcclusion(bool occlusion);
 
     ///@{
-    /** As of vtkAnamorphProjectionShader. */
+    /** Properties of the vtkAnamorphProjectionShader. */
     void SetProjectionMode(int mode);
     void SetHideUnpainted(bool hide);
     ///@}
@@ -69,10 +69,10 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     vtkNew<vtkAnamorphPanoramaProjector> Projector;
     vtkNew<vtkAnamorphProjectionShader> Shader;
     bool Occlusion = false;
-    /// The triangles of this rank, and when what they were made of changed.
+    /// The triangles of this rank, and the time when what they were made of changed.
     vtkNew<vtkPolyData> OwnTriangles;
     vtkMTimeType OwnTime = 0;
-    /// Those of all ranks, from the data to the world.
+    /// The triangles of all ranks, by the way from the data to the world.
     vtkNew<vtkMatrixToLinearTransform> ToWorld;
     vtkNew<vtkTransformPolyDataFilter> Occluders;
 };

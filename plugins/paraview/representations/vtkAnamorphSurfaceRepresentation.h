@@ -18,7 +18,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphSurfaceRepresentation
     static vtkAnamorphSurfaceRepresentation* New();
     vtkTypeMacro(vtkAnamorphSurfaceRepresentation, vtkAnamorphFigureRepresentation);
 
-    /** As of vtkAnamorphFigureGeometry, in pixels of the view. */
+    /** Properties of the vtkAnamorphFigureGeometry, in pixels of the view. */
     void SetTolerance(double tolerance);
 
   protected:

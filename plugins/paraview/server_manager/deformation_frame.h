@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of the property Deformations, and where their centres are in space.
+// The rows of the property Deformations, and the places of their centres in space.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ class vtkSMProxy;
 
 namespace anamorph_paraview {
 
-/// A row: c_u, c_v, a_u, a_v, V_x, V_y, V_z and what else there is.
+/// The columns of a row: c_u, c_v, a_u, a_v, V_x, V_y, V_z and what else there is.
 constexpr unsigned int kCenter = 0, kExtent = 2, kVector = 4, kLeastColumns = 7;
 
 unsigned int columns_of(vtkSMProperty* deformations);
@@ -23,7 +23,7 @@ struct Frame {
     std::array<Point, 3> axes = {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
 
     Point point(double u, double v, double t) const;
-    /// (u, v, t) of a point.
+    /// The parameters (u, v, t) of a point.
     Point parameters(const Point& point) const;
     /// Is a point over (u, v), within rounding?
     bool is_over(double u, double v, const Point& point) const;
@@ -31,11 +31,11 @@ struct Frame {
 };
 
 /// The frame of a deform proxy: from its properties Origin, Axis1 and Axis2, or with AutomaticPlane as
-/// vtkAnamorphDeform had it last, or would take it from bounds. Of texture coordinates: x-y. None while
+/// vtkAnamorphDeform had it last, or would take it from bounds. For texture coordinates it is x-y. None while
 /// bounds are not known, or axes are parallel.
 std::optional<Frame> frame_of(vtkSMProxy* deform);
 
-/// The bounds of its input; false if they are not known.
+/// Finds the bounds of the proxy's input; false if they are not known.
 bool input_bounds(vtkSMProxy* deform, double bounds[6]);
 
 }  // namespace anamorph_paraview

@@ -67,12 +67,12 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
 
-    bool InStep = true;         ///< while one side follows the other, and before there are all properties
+    bool InStep = true;         ///< one side follows the other, or not all properties are there yet
     bool HandlesPut = false;    ///< SelectedCenter has been written to
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
     double UsedPlane[9] = {};
     bool UsedPlaneKnown = false;
-    std::unique_ptr<Edits> Pending;  ///< since the last update
+    std::unique_ptr<Edits> Pending;  ///< edits since the last update
 };
 
 #endif

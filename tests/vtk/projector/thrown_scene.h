@@ -27,7 +27,7 @@
 #include "anamorph/panorama/panorama.h"
 #include "anamorph/projector/projector.h"
 
-/// A picture whose rows are counted from the top.
+/// The colour of a pixel: red, green and blue.
 using Colour = std::array<unsigned char, 3>;
 
 inline vtkSmartPointer<vtkTexture> texture_of(int width, int height,
@@ -47,7 +47,7 @@ inline vtkSmartPointer<vtkTexture> texture_of(int width, int height,
     return texture;
 }
 
-/// Pixel (i, j) of a panorama of up to 3840 x 3840 has its place as its colour.
+/// The colour that stands for the place (i, j) of a panorama of up to 3840 x 3840 pixels.
 inline Colour colour_of_place(int i, int j) {
     return {static_cast<unsigned char>(i % 256), static_cast<unsigned char>(j % 256),
             static_cast<unsigned char>(i / 256 + j / 256 * 16)};
@@ -55,7 +55,7 @@ inline Colour colour_of_place(int i, int j) {
 inline std::array<int, 2> place_of_colour(const Colour& c) {
     return {c[0] + c[2] % 16 * 256, c[1] + c[2] / 16 * 256};
 }
-/// No place of a panorama of up to 3840 pixels.
+/// The colour that stands for no place of a panorama of up to 3840 x 3840 pixels.
 inline constexpr Colour kNoPlace{255, 255, 255};
 
 /// A camera in a room.
@@ -82,7 +82,7 @@ class Room {
         look({0, 0, 0});
     }
 
-    /// Where the camera stands, beside the middle, and how it looks.
+    /// Puts the camera at a place beside the middle, and turns it.
     void look(const anamorph::Orientation& orientation, const glm::dvec3& from = {0.4, 0.3, 0.7}) {
         const glm::dmat3 r = anamorph::rotation(orientation);
         m_eye = m_middle + from;
@@ -97,7 +97,7 @@ class Room {
         camera->SetClippingRange(0.01, 20);
     }
 
-    /// What the window shows, in rows from the top.
+    /// Draws the window, in rows from the top.
     std::vector<Colour> picture() {
         window->Render();
         vtkNew<vtkUnsignedCharArray> pixels;
@@ -123,7 +123,7 @@ class Room {
         return {part[0], part[1], part[2]};
     }
 
-    /// What a pixel shows.
+    /// The point of a wall that a pixel shows, and the wall's normal.
     struct Wall {
         glm::dvec3 point, normal;
     };

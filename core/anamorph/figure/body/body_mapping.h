@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a point of a body lies on its texture: (u, v) in 0 to 1, v down, from the point (x, y, z) of the unit
-// sphere in the body's own axes. An unturned body's side towards the observer is z < 0; there all mappings
-// show the middle of the texture, its left on the left and its top on the top.
+// The place of a point of a body on its texture: (u, v) in 0 to 1, v down, from the point (x, y, z) of the
+// unit sphere in the body's own axes. An unturned body's side towards the observer is z < 0; there all
+// mappings show the middle of the texture, its left on the left and its top on the top.
 //
 // Chapman 1986, section 3.6, has latitude asin(y) and longitude asin(x / cos(latitude)), which shows the same
 // on the front and the back, and the linear one, longitude asin(x).
@@ -58,7 +58,7 @@ void texture_point(BodyMapping mapping, const T& x, const T& y, const T& z, T& u
         u = 0.5 + arcsine(x, y, z) * (1 / pi);
 }
 
-/// (u, v) of a point of the unit sphere, in double.
+/// The texture coordinates (u, v) of a point of the unit sphere, in double.
 inline glm::dvec2 texture_point(BodyMapping mapping, const glm::dvec3& p) {
     glm::dvec2 uv(0.0);
     texture_point(mapping, p.x, p.y, p.z, uv.x, uv.y);

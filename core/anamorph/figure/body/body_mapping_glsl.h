@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a point of a body lies on its texture, as a function of GLSL: the formulas of body_mapping.h write it themselves
-// (number/glsl_number.h), with their derivatives, so that no seam shows.
+// The place of a point of a body on its texture, as a function of GLSL: the formulas of body_mapping.h write
+// it themselves (number/glsl_number.h), with their derivatives, so that no seam shows.
 #pragma once
 
 #include <string>

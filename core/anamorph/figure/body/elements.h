@@ -6,7 +6,7 @@
 
 namespace anamorph::figure {
 
-/// What is drawn of a chemical element.
+/// The properties of a chemical element that are drawn.
 struct ChemicalElement {
     double covalent_radius;  ///< Angstrom; Cordero et al., Dalton Trans. 2008
     glm::dvec3 color;        ///< 0 to 255

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether two ellipsoids meet, exactly: the contact function of Perram and Wertheim (1985).
+// The test whether two ellipsoids meet, exactly: the contact function of Perram and Wertheim (1985).
 #pragma once
 
 #include <algorithm>
@@ -22,14 +22,14 @@ struct EllipsoidContact {
     double gap = 0;
 };
 
-/// Relative error of `ratio` below 1e-12 for axes that differ by up to 1e8. An axis shorter than 1e-18 of the
-/// longest of both counts as that.
+/// Finds the contact of two ellipsoids. The relative error of `ratio` is below 1e-12 for axes that differ by
+/// up to 1e8. An axis shorter than 1e-18 of the longest of both counts as that.
 EllipsoidContact contact_of(const Ellipsoid& first, const Ellipsoid& second) noexcept;
 
-/// How far an ellipsoid reaches from its centre in a direction of length 1: |diag(a) R^T n|.
+/// The distance that an ellipsoid reaches from its centre in a direction of length 1: |diag(a) R^T n|.
 double reach_of(const Ellipsoid& ellipsoid, const glm::dvec3& direction) noexcept;
 
-/// The longest of half axes.
+/// The longest of three half axes.
 inline double longest(const glm::dvec3& axes) {
     return std::max({axes.x, axes.y, axes.z});
 }

@@ -14,7 +14,7 @@ namespace anamorph::figure {
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180, kTurn = 2 * std::numbers::pi;
 
-/// The same angle in radians, from 0 up to a whole turn.
+/// An angle in radians, less whole turns: from 0 up to a whole turn.
 inline double in_turn(double angle) {
     angle -= kTurn * std::floor(angle / kTurn);
     return angle < kTurn ? angle : 0;
@@ -50,7 +50,7 @@ inline glm::dvec3 angles_of_rotation(const glm::dmat3& rotation) {
     return angles_of_turn(glm::quat_cast(rotation));
 }
 
-/// Rx Ry Rz of angles in degrees, as `observe` turns.
+/// The turn Rx Ry Rz by angles in degrees, as `observe` turns.
 inline glm::dquat turn_xyz(const glm::dvec3& angles) {
     return turn_about({1, 0, 0}, angles.x) * turn_about({0, 1, 0}, angles.y) *
            turn_about({0, 0, 1}, angles.z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the right-handed space of other programs and that of figures (frame.h), z becoming -z.
+// The way between the right-handed space of other programs and that of figures (frame.h): z becomes -z.
 #pragma once
 
 #include <algorithm>

@@ -25,11 +25,11 @@ namespace anamorph::figure {
 namespace {
 
 constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000, kMostOperations = 1000, kMostWarnings = 20;
-/// Of a cell's edge, in Angstrom.
+/// The least length of a cell's edge, in Angstrom.
 constexpr double kLeastLength = 0.1;
 /// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
 constexpr double kHalfProbability = 1.5381722544550522;
-/// Of atoms without displacement, and what bonds may be longer than radii; Angstrom.
+/// The radius of atoms without displacement, and the length that bonds may have beyond radii; Angstrom.
 constexpr double kPlainRadius = 0.15, kBondSlack = 0.4;
 
 /// The tags of the operations of symmetry, the newest one first; the last of modulated structures, in four dimensions or more.
@@ -345,7 +345,8 @@ class Structure {
         return element || symbol.empty() ? element : find_element(symbol.substr(0, 1));
     }
 
-    /// Of U in the axes of the cell, whose lengths are those of the reciprocal cell: A N U N^T A^T.
+    /// Sets an atom's shape to that of U in the axes of the cell, whose lengths are those of the reciprocal
+    /// cell: A N U N^T A^T.
     void set_displacement(Atom& atom, std::size_t row) const {
         const auto aniso = m_aniso.find(atom.label);
         if (aniso == m_aniso.end()) {
@@ -416,7 +417,7 @@ class Structure {
         return "";
     }
 
-    /// Of a file that lists none: those of the space group that it names, or none.
+    /// The operations, for a file that lists none, of the space group that it names; or none.
     std::vector<SymmetryOperation> operations_of_group() {
         SpaceGroupName name;
         std::string tag;
@@ -514,7 +515,7 @@ class Structure {
         bonds = std::move(crystal.bonds);
     }
 
-    /// Those between the atoms as they are listed.
+    /// Finds the bonds between the atoms as they are listed.
     void find_bonds() {
         for (std::size_t i = 0; i < atoms.size(); ++i)
             for (std::size_t j = i + 1; j < atoms.size(); ++j) {

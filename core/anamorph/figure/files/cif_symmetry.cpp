@@ -77,7 +77,7 @@ glm::ivec3 cell_of(const glm::dvec3& place) {
     return glm::ivec3(glm::floor(place));
 }
 
-/// Those that are not one: of each atom all images, but for lattice vectors.
+/// The sites of all images of each atom; those that differ by lattice vectors are one.
 std::vector<CrystalSite> sites_of(const std::vector<glm::dvec3>& places,
                                   const std::vector<SymmetryOperation>& operations, const glm::dmat3& cell,
                                   std::size_t most) {

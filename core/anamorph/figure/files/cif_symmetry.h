@@ -15,7 +15,7 @@
 
 namespace anamorph::figure {
 
-/// p becomes turn p + shift.
+/// A symmetry operation: p becomes turn p + shift.
 struct SymmetryOperation {
     glm::dmat3 turn{1.0};
     glm::dvec3 shift{0.0};
@@ -40,7 +40,7 @@ struct Crystal {
     std::vector<CrystalBond> bonds;
 };
 
-/// The most that is made.
+/// The most sites and bonds that are made.
 struct CrystalLimits {
     std::size_t sites = 0, bonds = 0;
 };

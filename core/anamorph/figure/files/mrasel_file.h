@@ -16,7 +16,7 @@
 
 namespace anamorph::figure {
 
-/// Reads such a text. Throws Error naming the file (`name`) and the line.
+/// Reads a frame from a text. Throws Error naming the file (`name`) and the line.
 FigureFrame mrasel_frame(std::string_view text, std::string_view name);
 
 }  // namespace anamorph::figure

@@ -15,7 +15,7 @@ const auto& table() {
     return gemmi::spacegroup_tables::main;
 }
 
-/// With one blank for several and for `_`, in small letters.
+/// A symbol with one blank for several and for `_`, in small letters.
 std::string spaced(std::string_view symbol) {
     std::string text;
     for (const char c : symbol)

@@ -17,13 +17,13 @@ namespace anamorph::figure {
 /// to the bottom.
 glm::dvec4 band_color(const std::vector<BackgroundBand>& bands, int y, int height);
 
-/// A picture that is drawn as large as another. One for each thread. Keeps a reference to the source.
+/// A picture that is drawn as large as another. Each thread needs its own. Keeps a reference to the source.
 class FigureBackdrop {
   public:
     FigureBackdrop(const Source& source, const Size& size);
 
-    /// What it has in a pixel, over `below`; colours are multiplied by alpha. `below` itself where the source
-    /// cannot be read.
+    /// The picture's colour in a pixel, laid over `below`; colours are multiplied by alpha. `below` itself
+    /// where the source cannot be read.
     glm::dvec4 color(int x, int y, const glm::dvec4& below);
 
   private:

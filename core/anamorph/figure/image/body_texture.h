@@ -18,7 +18,7 @@
 
 namespace anamorph::figure {
 
-/// What is seen of a texture: a body's surface, the texture moved by `offset` texels.
+/// The surface of a body that a texture lies on, moved by `offset` texels.
 struct TexturedSurface {
     const SeenSurface& surface;
     glm::dvec2 offset{0.0};
@@ -34,15 +34,15 @@ Color laid_over(const Color& color, double alpha, const Color& below) {
 /// Red, green, blue and alpha of a texel of 1 to 4 channels, the last of 2 and of 4 alpha.
 glm::dvec4 color_of_texel(const std::vector<float>& texel);
 
-/// One for each thread. Keeps a reference to the source.
+/// Reads the texture around a body. Each thread needs its own. Keeps a reference to the source.
 class BodyTexture {
   public:
     /// Where the source has no table of sums, TextureAverage::summed_area averages by footprints.
     BodyTexture(const Source& source, BodyMapping mapping, Filter filter,
                 TextureAverage average = TextureAverage::footprint);
 
-    /// What the texture has where a pixel shows the body at (x, y), over `below` where it is transparent.
-    /// `below` itself where the source cannot be read.
+    /// The texture's colour where a pixel shows the body at (x, y), laid over `below` where it is
+    /// transparent. `below` itself where the source cannot be read.
     glm::dvec3 color(const TexturedSurface& body, double x, double y, bool far_side, const glm::dvec3& below);
 
   private:

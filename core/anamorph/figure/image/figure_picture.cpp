@@ -61,7 +61,7 @@ class Textures {
     Textures(const std::vector<const Source*>& sources, const FigureLook& look)
         : m_sources(sources), m_look(look), m_open(look.textures.size()) {}
 
-    /// Null where there is none.
+    /// The texture of a number; null where there is none.
     BodyTexture* get(int index) {
         const auto i = static_cast<std::size_t>(index);
         if (index < 0 || i >= m_sources.size() || !m_sources[i]) return nullptr;
@@ -70,7 +70,7 @@ class Textures {
                 std::make_unique<BodyTexture>(*m_sources[i], m_look.mapping, m_look.filter, m_look.average);
         return m_open[i].get();
     }
-    /// The same of the backdrop, of a picture of this size.
+    /// The backdrop of a picture of this size; null where there is none.
     FigureBackdrop* backdrop(const Size& size) {
         const std::size_t i = m_look.textures.size();
         if (!m_look.backdrop || i >= m_sources.size() || !m_sources[i]) return nullptr;

@@ -26,7 +26,7 @@
 
 namespace anamorph::figure {
 
-/// What is drawn of a figure.
+/// The styles in which a figure is drawn.
 enum class FigureStyle {
     shaded,   ///< bodies in their colours, lit
     outline,  ///< outlines, hidden lines removed

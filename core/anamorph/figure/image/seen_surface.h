@@ -29,7 +29,7 @@
 
 namespace anamorph::figure {
 
-/// c + x dx + y dy.
+/// The affine function c + x dx + y dy of a place in a pixel.
 struct AffineOfPixel {
     double c = 0, x = 0, y = 0;
 
@@ -38,7 +38,7 @@ struct AffineOfPixel {
     T operator()(const T& dx, const T& dy) const {
         return c + x * dx + y * dy;
     }
-    /// The most that it changes from the middle of a pixel to its corners.
+    /// The most that the function changes from the middle of a pixel to its corners.
     double over_half_pixel() const { return 0.5 * (std::fabs(x) + std::fabs(y)); }
 };
 
@@ -48,19 +48,20 @@ struct SurfaceHit {
     bool far_side = false;        ///< the body is seen from inside
 };
 
-/// Pixels are counted from the upper left corner of a picture, y down.
+/// A body's surface as the pixels of a picture show it. Pixels are counted from the upper left corner, y
+/// down.
 class SeenSurface {
   public:
-    /// Axes shorter than a billionth of the longest count as that. `height`: of the picture; the screen of
-    /// `view` has its origin at the picture's lower left corner.
+    /// Takes a body. Axes shorter than a billionth of the longest count as that. `height`: of the picture;
+    /// the screen of `view` has its origin at the picture's lower left corner.
     SeenSurface() = default;
     SeenSurface(Ellipsoid body, const View& view, double height);
 
-    /// Pixels outside of it do not show the body.
+    /// The box of pixels that may show the body.
     const Box& box() const { return m_box; }
     /// The largest nearness of any point of the body.
     double nearest() const { return m_nearest; }
-    /// Part of the body may be nearer than View::near: then its near side is not a function on all of the
+    /// May part of the body be nearer than View::near? Then its near side is not a function on all of the
     /// pixels that show it.
     bool meets_near_plane() const { return m_meets_near; }
 
@@ -108,8 +109,8 @@ class SeenSurface {
             u[static_cast<std::size_t>(k)] = p[0] * m_unit[0][k] + p[1] * m_unit[1][k] + p[2] * m_unit[2][k];
         return u;
     }
-    /// The gradient of the body's quadric there, as the observer sees it: outwards, x right, y up, z away; not
-    /// of length 1.
+    /// The gradient of the body's quadric at the point that is seen at (x, y), as the observer sees it:
+    /// outwards, x right, y up, z away; not of length 1.
     glm::dvec3 gradient(double x, double y, bool far_side) const {
         return m_gradient * turned_point(x, y, far_side);
     }
@@ -145,7 +146,7 @@ class SeenSurface {
     double m_square = 1;  ///< m
     double m_bulge = 1;
     double m_eye = 0;                ///< o
-    double m_near_limit = HUGE_VAL;  ///< of the near plane
+    double m_near_limit = HUGE_VAL;  ///< nearness of the near plane
     double m_nearest = HUGE_VAL;
     double m_reach =
         0;  ///< the most that sqrt(m) |(e1, e2)| - w changes from a pixel's middle to its corners

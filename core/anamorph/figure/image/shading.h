@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How light falls on a body: the formula of RASEL, and the usual two.
+// The light on a body: the formula of RASEL, and the usual two.
 //
 // Directions are the observer's: x right, y up, z away. With the unit normal n, the unit direction l towards
 // the light, that towards the eye v, and the ambient share A, a colour is multiplied by

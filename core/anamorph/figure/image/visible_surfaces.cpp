@@ -33,7 +33,7 @@ Cover near_cover(const std::array<double, 4>& corners, double middle) {
     return {least, 2 * middle - least, false};
 }
 
-/// Of a body that meets the near plane: the inside of it, where nothing else of it shows.
+/// The cover by a body that meets the near plane: by the inside of it, where nothing else of it shows.
 Cover far_cover(const SeenSurface& surface, int x, int y) {
     double greatest = -HUGE_VAL;
     for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which bodies the pixels of a picture show: the nearest surface of each view ray, or of the 16 x 16 rays of
-// each pixel.
+// The bodies that the pixels of a picture show: the nearest surface of each view ray, or of the 16 x 16 rays
+// of each pixel.
 //
 // Pixels of which a body provably covers all before every other have it whole; only the others are sampled,
 // and of bodies only those that may show there. So what a pixel is told is exactly what all of its rays say.
@@ -18,19 +18,19 @@
 
 namespace anamorph::figure {
 
-/// What a pixel shows of a body.
+/// The part of a pixel that shows one body.
 struct VisiblePart {
     int body = 0;
     bool far_side = false;
-    int samples = 0;      ///< of VisibleSurfaces::kSamples
-    double x = 0, y = 0;  ///< the middle of those, in pixels of the picture; of all: the pixel's middle
+    int samples = 0;      ///< number of samples, of VisibleSurfaces::kSamples
+    double x = 0, y = 0;  ///< the samples' middle, in pixels of the picture; of all: the pixel's middle
 };
 
 /// The parts of all pixels of a box, row by row.
 struct VisibleParts {
     Box box;
     std::vector<VisiblePart> parts;
-    std::vector<std::size_t> first;  ///< of each pixel, and the end
+    std::vector<std::size_t> first;  ///< position of the first part of each pixel, and the end
 
     std::span<const VisiblePart> of(int x, int y) const {
         const auto i = static_cast<std::size_t>(std::int64_t{y - box.y0} * box.width() + (x - box.x0));
@@ -38,7 +38,7 @@ struct VisibleParts {
     }
 };
 
-/// What the ray through the middle of a pixel meets first.
+/// The body that the ray through the middle of a pixel meets first.
 struct VisiblePoint {
     int body = -1;  ///< -1: nothing
     SurfaceHit hit;
@@ -57,9 +57,9 @@ class VisibleSurfaces {
     const SeenSurface& surface(int body) const { return m_surfaces[static_cast<std::size_t>(body)]; }
     bool perspective() const { return m_perspective; }
 
-    /// The parts of the pixels of a small box; samples that are in no part show nothing.
+    /// Finds the parts of the pixels of a small box; samples that are in no part show nothing.
     VisibleParts parts(const Box& box) const;
-    /// What the middles of the pixels of a small box show, row by row.
+    /// Finds what the middles of the pixels of a small box show, row by row.
     std::vector<VisiblePoint> points(const Box& box) const;
 
   private:

@@ -23,7 +23,7 @@ class FigureAction {
           m_frame(frame),
           m_message(message) {}
 
-    /// All actions but `call`.
+    /// Performs the action, which is any but `call`.
     void perform();
 
     /// The value of a number or a variable.
@@ -51,12 +51,12 @@ class FigureAction {
     bool strict() const { return m_program.dialect == Dialect::strict; }
     [[noreturn]] void fail(const std::string& what) const;
     void say(const std::string& line) const;
-    /// The two ways to move, and the test that what was moved is still somewhere.
+    /// Moves a part; spin() turns one. Both check that what was moved is still somewhere.
     void move(const FigurePart& part, const glm::dvec3& by) const;
     void spin(const FigurePart& part, const glm::dquat& by, const glm::dvec3& about) const;
     void check(const FigurePart& part) const;
     void check(const glm::dvec3& numbers, const std::string& what) const;
-    /// Where the way from `now` to a target leads in this frame.
+    /// The place that the way from `now` to a target leads to in this frame.
     glm::dvec3 towards(const glm::dvec3& now, const glm::dvec3& target, const std::string& what) const;
     std::string ellipsoid_name(int i) const;
     std::string joint_name(int j) const;

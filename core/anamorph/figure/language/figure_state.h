@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a performance is in the middle of: where everything is, and what is joined to what.
+// The state in which a performance is: where everything is, and what is joined to what.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -13,23 +13,24 @@
 
 namespace anamorph::figure {
 
-/// What joints connect at the moment. Shared between states until an action attaches or detaches.
+/// The connections that joints make at the moment. Shared between states until an action attaches or
+/// detaches.
 struct Topology {
     struct Ends {
         int first = 0, second = 0;
         bool joined = false;  ///< the joint exists
     };
     std::vector<Ends> joints;
-    std::vector<int> joint_order;             ///< those that exist, in the order made
-    std::vector<std::vector<int>> joints_of;  ///< of each ellipsoid
+    std::vector<int> joint_order;             ///< the joints that exist, in the order made
+    std::vector<std::vector<int>> joints_of;  ///< the joints of each ellipsoid
     std::vector<int> figure_first;            ///< the ellipsoid that a figure is found by; -1: no such figure
-    std::size_t visited = 0;                  ///< ellipsoids and joints met in making it
+    std::size_t visited = 0;                  ///< number of ellipsoids and joints visited in making this
 
-    /// Fills joints_of and what figure_of tells from the others.
+    /// Fills joints_of, and the pieces that figure_of() looks up, from the other members.
     void connect(std::size_t ellipsoids);
     /// Adds a joint that did not exist.
     void attach(int joint, int first, int second);
-    /// Of an ellipsoid; -1: none.
+    /// The figure of an ellipsoid; -1: none.
     int figure_of(int ellipsoid) const;
     int other_end(int joint, int ellipsoid) const;
     bool is_end(int joint, int ellipsoid) const;
@@ -54,7 +55,7 @@ struct FigureState {
         int image = -1;
     };
     struct Value {
-        double number = -1;  ///< or the position in the table of its kind
+        double number = -1;  ///< the number, or the position in the table of its kind
         OperandKind kind = OperandKind::number;
         bool set = false;
     };
@@ -64,8 +65,8 @@ struct FigureState {
         bool forbidden = false;
     };
 
-    std::vector<Body> bodies;        ///< as Program::ellipsoids; 0 is world, which never moves
-    std::vector<glm::dvec3> joints;  ///< positions in space, as Program::joints
+    std::vector<Body> bodies;        ///< in the order of Program::ellipsoids; 0 is world, which never moves
+    std::vector<glm::dvec3> joints;  ///< positions in space, in the order of Program::joints
     std::vector<Value> variables;
     std::vector<Overlap> overlaps;       ///< the last that names a pair holds
     std::shared_ptr<Topology> topology;  ///< changed by own_topology alone
@@ -82,17 +83,17 @@ struct FigurePart {
     std::vector<int> bodies, joints;
 };
 
-/// What is reached from an ellipsoid without crossing a joint (-1: none), in the order found.
+/// The part that is reached from an ellipsoid without crossing a joint (-1: none), in the order found.
 FigurePart part_from(const FigureState& state, int ellipsoid, int joint);
-/// A figure; `every` and `world` are all but ellipsoid 0.
+/// The part that is a figure; `every` and `world` are all but ellipsoid 0.
 FigurePart part_of_figure(const FigureState& state, int figure);
 
 void translate(FigureState& state, const FigurePart& part, const glm::dvec3& by);
 void turn(FigureState& state, const FigurePart& part, const glm::dquat& by, glm::dvec3 about);
 
-/// How far down and up an ellipsoid reaches from its centre: sqrt(sum_k (a_k R_yk)^2).
+/// The distance that an ellipsoid reaches up and down from its centre: sqrt(sum_k (a_k R_yk)^2).
 double half_height(const FigureState::Body& body);
-/// The lowest y of any of them.
+/// The lowest y of any point of these bodies.
 double lowest(const FigureState& state, const std::vector<int>& bodies);
 
 Ellipsoid shape_of(const FigureState::Body& body);

@@ -72,7 +72,7 @@ struct Performance::Impl {
                             FigureAction::number(program, state, m.stop, m.position));
     }
 
-    /// The same, but nothing where variables are not ready for it.
+    /// The span of a movement, but nothing where variables are not ready for it.
     std::optional<Span> span_ahead(std::size_t s, std::size_t i) const {
         if (spans[s][i]) return spans[s][i];
         const Movement& m = program.subroutines[s].movements[i];

@@ -74,7 +74,7 @@ enum class OperandKind { number, variable, ellipsoid, joint, figure, axis, subro
 struct Operand {
     OperandKind kind = OperandKind::number;
     double number = 0;  ///< the value of an operand that is a number
-    int index = 0;      ///< of any other, the position in the table of its kind; axes are 0, 1, 2
+    int index = 0;      ///< for other operands, the position in the table of its kind; axes are 0, 1, 2
 
     bool operator==(const Operand&) const = default;
 };
@@ -105,7 +105,7 @@ struct JointDeclaration {
     std::string name;
     bool attached = false;  ///< the joint is made by `attach`, and is not there before
     int first = 0, second = 0;
-    glm::dvec3 first_offset{0.0}, second_offset{0.0};  ///< from the centre of each, at rest
+    glm::dvec3 first_offset{0.0}, second_offset{0.0};  ///< offsets from the centre of each body, at rest
     std::optional<std::array<double, 6>> limit;        ///< x, y, z: smallest and largest angle
     ScriptPosition position;
 };
@@ -113,7 +113,7 @@ struct JointDeclaration {
 /// The declaration `figure NAME n ellipsoids`.
 struct FigureDeclaration {
     std::string name;
-    std::vector<int> ellipsoids;  ///< as listed; empty when `detach` makes it
+    std::vector<int> ellipsoids;  ///< in the order listed; empty when `detach` makes it
     ScriptPosition position;
 };
 
@@ -128,7 +128,7 @@ struct Subroutine {
 struct Program {
     Dialect dialect = Dialect::classic;
     std::vector<std::string> files;
-    std::vector<ScriptPosition> included_at;  ///< for each file; line 0 where no statement included it
+    std::vector<ScriptPosition> included_at;  ///< what includes each file; line 0 where nothing does
     std::vector<EllipsoidDeclaration> ellipsoids;
     std::vector<JointDeclaration> joints;
     std::vector<FigureDeclaration> figures;
@@ -139,7 +139,8 @@ struct Program {
 
     /// A place as text: "walk.n:12:5".
     std::string where(const ScriptPosition& position) const;
-    /// Where a file was included: " (included at walk.n:3:1)", one for each file between; empty for the script itself.
+    /// The place where a file was included: " (included at walk.n:3:1)", one for each file between; empty for
+    /// the script itself.
     std::string included_from(int file) const;
 };
 

@@ -38,7 +38,7 @@ inline constexpr std::size_t kMaxScriptItems = std::size_t{1} << 20;
 /// How severe a diagnostic is: a script with an error cannot be performed, one with warnings can.
 enum class Severity { warning, error };
 
-/// What is wrong with a script, and where.
+/// A fault of a script, and its place.
 struct Diagnostic {
     Severity severity = Severity::error;
     std::string file;

@@ -15,13 +15,14 @@ struct ScriptToken {
     bool begins_line = false;
 };
 
-/// Tokens lie between blanks; `*`, wherever it is, starts a comment that lasts to the end of the line.
+/// Splits a text into tokens, which lie between blanks; `*`, wherever it is, starts a comment that lasts to
+/// the end of the line.
 class ScriptLexer {
   public:
-    /// A byte order mark ahead of the text is left out.
+    /// Starts at the beginning of a text; a byte order mark ahead of it is left out.
     explicit ScriptLexer(std::string_view text);
     ScriptToken next();
-    /// Leaves the line, if a token of it is left: the first such, or an empty one.
+    /// Leaves the line if a token of it is left. Returns the first that was left, or an empty one.
     ScriptToken skip_line();
 
   private:
@@ -39,8 +40,8 @@ std::optional<char> odd_character(std::string_view token, Dialect dialect);
 /// Whether a token is meant as a number: signs, digits and points only, and a digit.
 bool looks_like_number(std::string_view token);
 
-/// [+-]digits[.digits]. The classic dialect allows signs anywhere: each `-` turns the sign, `+` is passed
-/// over.
+/// The number that a token [+-]digits[.digits] is. The classic dialect allows signs anywhere: each `-` turns
+/// the sign, `+` is passed over.
 std::optional<double> read_script_number(std::string_view token, Dialect dialect);
 
 }  // namespace anamorph::figure

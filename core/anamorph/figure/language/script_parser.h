@@ -14,7 +14,7 @@
 
 namespace anamorph::figure {
 
-/// Numbers of frames beyond it are taken for it.
+/// The largest number of a frame; numbers beyond it, either way, count as this.
 inline constexpr int kLargestFrame = 1000000000;
 
 class ScriptParser {
@@ -24,7 +24,7 @@ class ScriptParser {
     void parse(std::string_view text, std::string_view name);
 
   private:
-    /// Ends the statement in which it is thrown; what is wrong has been reported.
+    /// Thrown to end a statement whose fault has been reported.
     struct Abandoned {};
 
     struct Pending {
@@ -43,7 +43,7 @@ class ScriptParser {
 
     // Statements; each throws Abandoned where it cannot go on
     bool statement(bool library);  ///< false at the end of the text
-    /// What follows a statement's word; false after stop.
+    /// Reads the rest of a statement, after its word; false after stop.
     bool rest_of_statement(const script_table::Entry& entry, const ScriptToken& word, bool library);
     void end_statement();
     void unknown_statement(const ScriptToken& token);
@@ -79,10 +79,10 @@ class ScriptParser {
     void report(Severity severity, const ScriptPosition& position, std::string found, std::string expected,
                 std::string message);
     void error(const ScriptPosition& position, const std::string& message);
-    /// A warning, in the strict dialect an error.
+    /// Reports a warning, in the strict dialect an error.
     void fault(const ScriptPosition& position, const std::string& message);
     [[noreturn]] void unexpected(const ScriptToken& token, const std::string& expected);
-    /// How the statement being read goes on after its word.
+    /// Says how the statement that is being read goes on after its word.
     std::string usage() const;
     void check_size(std::size_t size, const ScriptPosition& position);
 
@@ -94,10 +94,10 @@ class ScriptParser {
     ScriptToken m_token;
     bool m_peeked = false;
     int m_file = 0;
-    const script_table::Entry* m_entry = nullptr;  ///< of the statement or the action being read
+    const script_table::Entry* m_entry = nullptr;  ///< entry of the statement or action being read
     ScriptPosition m_entry_position;
-    std::set<std::string, std::less<>> m_short_forms;     ///< those that have been warned of
-    int m_subroutine = 0;                                 ///< the one being read
+    std::set<std::string, std::less<>> m_short_forms;     ///< short forms that have been warned of
+    int m_subroutine = 0;                                 ///< the subroutine that is being read
     std::set<int> m_defined_subroutines{0}, m_shaped{0};  ///< declared in full, not only named
     std::vector<std::string> m_including;
     std::size_t m_included_bytes = 0;
@@ -114,7 +114,8 @@ inline bool runs_backwards(const Movement& m) {
            m.stop.number < m.start.number;
 }
 
-/// What only the whole program shows: rings of joints, figures in pieces, subroutines that call themselves.
+/// Checks what only the whole program shows: rings of joints, figures in pieces, subroutines that call
+/// themselves.
 void check_program(Script& script);
 
 }  // namespace anamorph::figure

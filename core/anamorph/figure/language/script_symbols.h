@@ -13,17 +13,17 @@
 
 namespace anamorph::figure {
 
-/// What the letters of script_table::Entry::operands are called in messages.
+/// The words that messages use for the letters of script_table::Entry::operands.
 const char* description_of(char letter);
 const char* description_of(OperandKind kind);
 
-/// Fit for a message: in quotes, on one line, not endless.
+/// A text as messages show it: in quotes, on one line, not endless.
 std::string in_quotes(std::string_view text);
 
 /// The candidate that `word` is most likely a misspelling of; empty where none is near.
 std::string nearest_of(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// `, did you mean "NAME"?`, or nothing for an empty name.
+/// The ending `, did you mean "NAME"?` of a message, or nothing for an empty name.
 std::string suggestion(const std::string& name);
 
 class ScriptSymbols {
@@ -38,7 +38,8 @@ class ScriptSymbols {
     std::optional<OperandKind> other_kind(OperandKind kind, std::string_view name) const;
     bool known(std::string_view name) const;
 
-    /// What a name means where `letter` is asked for: a variable first. Numbers are not looked up.
+    /// The operand that a name means where `letter` is asked for: a variable first. Numbers are not looked
+    /// up.
     std::optional<Operand> resolve(char letter, std::string_view name) const;
     /// The known name of what `letter` asks for that is nearest to `name`; empty where none is near.
     std::string nearest(char letter, std::string_view name) const;

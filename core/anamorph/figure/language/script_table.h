@@ -23,7 +23,7 @@ enum class Keyword {
     debug,
     include,
     stop,
-    distribution,  ///< and `call` where a statement begins
+    distribution,  ///< a distribution, and `call` where a statement begins
     action,
     ignored,  ///< a statement or action that is passed over
     dead      ///< keywords of the first versions
@@ -34,10 +34,10 @@ struct Entry {
     Keyword keyword;
     Distribution distribution = Distribution::repeat;
     Action action = Action::call;
-    /// What the operands of an action are, a letter each: n number, v variable, e ellipsoid, j joint, J joint
+    /// The kinds of an action's operands, a letter each: n number, v variable, e ellipsoid, j joint, J joint
     /// made here, f figure, F figure made here, a axis, s subroutine, i image, * anything.
     std::string_view operands = {};
-    /// What follows the word, for people: a name for each operand.
+    /// The operands as people read them: a name for each, after the word.
     std::string_view usage = {};
 };
 
@@ -45,11 +45,11 @@ std::span<const Entry> entries();
 
 /// The first entry that begins with `word` and can begin a statement; nullptr where there is none.
 const Entry* find_statement(std::string_view word);
-/// The same among actions and what is ignored.
+/// The first entry that begins with `word` and is an action or ignored; nullptr where there is none.
 const Entry* find_action(std::string_view word);
 /// Another entry that a shortened `word` may mean where `entry` is the first; nullptr where there is none.
 const Entry* rival_of(const Entry& entry, std::string_view word, bool among_actions);
-/// All that may stand in one of the two places.
+/// All words that may stand where an action does, or else where a statement begins.
 std::vector<std::string_view> words(bool of_actions);
 /// Whether `word` is a keyword, written in full.
 bool is_keyword(std::string_view word);

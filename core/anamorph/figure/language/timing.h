@@ -7,8 +7,8 @@
 namespace anamorph::figure {
 
 struct Shares {
-    double frac = 1;  ///< of the whole; they sum to 1
-    double prop = 1;  ///< of what remains; the last is 1
+    double frac = 1;  ///< share of the whole; they sum to 1
+    double prop = 1;  ///< share of what remains; the last is 1
 };
 
 /// The shares of frame `a` of `n`, 1 <= a <= n. `repeat` gives 1 and 1.

@@ -32,7 +32,7 @@ struct Connection {
 std::vector<Connection> connections(std::span<const Joint> joints, std::span<const Ellipsoid> bodies,
                                     const Outlines& outlines, const View& view,
                                     const ParallelFor& parallel_for = serial_for);
-/// The connections of a frame, as above for its joints and bodies.
+/// Finds the connections of a frame, for its own joints and bodies.
 std::vector<Connection> connections(const FigureFrame& frame, const Outlines& outlines, const View& view,
                                     const ParallelFor& parallel_for = serial_for);
 

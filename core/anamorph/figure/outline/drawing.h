@@ -42,7 +42,7 @@ struct DrawingOptions {
     bool fill = false;                           ///< bodies are filled with their colors, from far to near
 };
 
-/// What a stroke stands for.
+/// The kind of a stroke: what it stands for.
 enum class StrokeKind { visible, hidden, stick, dot, fill };
 
 /// A line on the page, or the closed line around what is filled.
@@ -61,7 +61,7 @@ struct Stroke {
 /// A frame on a page.
 struct Drawing {
     int frame = 0;
-    glm::dvec2 size{0.0};  ///< of the page, in pixels
+    glm::dvec2 size{0.0};  ///< size of the page, in pixels
     double line_width = 1, halo = 0;
     std::vector<Stroke> strokes;  ///< fills, then hidden strokes, then the others; each from far to near
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a body is worth drawing, by its size on the screen.
+// The detail with which a body is worth drawing, by its size on the screen.
 #pragma once
 
 #include <span>

@@ -33,7 +33,7 @@ struct Arc {
     bool operator==(const Arc&) const = default;
 };
 
-/// Where a limb lies as seen by the observer.
+/// The place of a limb as seen by the observer.
 enum class OutlineKind : std::uint8_t {
     whole,       ///< the limb lies before the observer
     cut,         ///< in perspective: part of the limb is nearer than View::near, or behind the eye
@@ -68,7 +68,7 @@ struct CrossingCurve {
     std::vector<Arc> visible, hidden;
 };
 
-/// What is outlined, and how exactly.
+/// The curves that are outlined, and how exactly.
 struct OutlineOptions {
     bool hide = true;                      ///< false: bodies are transparent, as VISIB draws them
     bool crossings = false;                ///< also the curves in which bodies pass through each other

@@ -12,7 +12,7 @@ namespace anamorph::figure {
 /// ends at `period` is joined to one that begins at 0.
 std::vector<Arc> union_of(std::vector<Arc> arcs, double period, bool closed = true);
 
-/// What of [0, period] arcs, as union_of takes them, leave out.
+/// The part of [0, period] that arcs, as union_of takes them, leave out.
 std::vector<Arc> complement_of(std::vector<Arc> arcs, double period, bool closed = true);
 
 /// Sorts a range into visible and hidden parts, without those that are `cut`; both as union_of takes them. An

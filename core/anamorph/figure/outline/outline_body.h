@@ -17,12 +17,12 @@ namespace anamorph::figure {
 struct SeenBody {
     OutlineKind kind = OutlineKind::whole;
     Ellipse<glm::dvec3> limb;    ///< in the scene
-    Ellipse<glm::dvec3> viewed;  ///< the limb; not of a body around the eye
+    Ellipse<glm::dvec3> viewed;  ///< the limb as View::to_view gives it; not of a body around the eye
     glm::dvec3 center{0.0};
 
     /// The body is |unit (p - center)| <= 1, where no axis is zero.
     bool solid = false;
-    glm::dmat3 unit{0.0};  ///< transposed: column k is row k
+    glm::dmat3 unit{0.0};  ///< unit, transposed: column k is row k
 
     /// d = p - viewed.center is d.x_row along viewed.cosine, d.y_row along viewed.sine and the rest along the
     /// view ray through viewed.center, of which `beyond` says how far, positive away from the observer. In
@@ -32,8 +32,8 @@ struct SeenBody {
 
     glm::dvec2 low{0.0}, high{0.0};       ///< box of the limb on the screen of unit distance
     double nearest = 0;                   ///< depth of the body's nearest point
-    double limb_farthest = 0, reach = 0;  ///< of the limb: greatest depth, greatest absolute coordinate
-    double unit_size = 0, cone_size = 0, beyond_size = 0;  ///< of `unit`, of the three rows, of `beyond`
+    double limb_farthest = 0, reach = 0;  ///< greatest depth and greatest absolute coordinate of the limb
+    double unit_size = 0, cone_size = 0, beyond_size = 0;  ///< sizes of `unit`, the three rows and `beyond`
 
     bool seen() const { return kind == OutlineKind::whole || kind == OutlineKind::cut; }
 };

@@ -11,10 +11,10 @@
 
 namespace anamorph::figure {
 
-/// Roundings of an operation or two per term of what decides whether a body hides something.
+/// The rounding of what decides whether a body hides something: an operation or two for each term.
 inline constexpr double kHidingRounding = 32 * 0x1p-52;
 
-/// All that lies within `around` of the line from center - half to center + half, as View::to_view gives it.
+/// The points within `around` of the line from center - half to center + half, as View::to_view gives it.
 struct SurfacePiece {
     glm::dvec3 center{0.0}, half{0.0};
     double around = 0;
@@ -22,9 +22,9 @@ struct SurfacePiece {
 
 enum class Covered { none, partly, all };
 
-/// What of a piece a body hides; `partly` also where this is not sure.
+/// Decides how much of a piece a body hides; `partly` also where this is not sure.
 Covered cover_of(const SeenBody& body, const SurfacePiece& piece, bool perspective);
-/// What of a piece of a body's surface is on the far side of it.
+/// Decides how much of a piece of a body's surface is on the body's far side.
 Covered far_side_of(const SeenBody& body, const SurfacePiece& piece);
 
 /// Does a body hide a point? To rounding: not where the point is on its surface or its limb.
@@ -35,7 +35,7 @@ bool is_on_far_side(const SeenBody& body, const glm::dvec3& point);
 /// May the body's surface pass through a piece?
 bool may_meet(const SeenBody& body, const SurfacePiece& piece);
 
-/// A solid body's surface by spherical triangles on the unit sphere, of which `from_unit` and the body's
+/// A solid body's surface as spherical triangles on the unit sphere, of which `from_unit` and the body's
 /// center make it.
 class Surface {
   public:
@@ -43,13 +43,14 @@ class Surface {
     using Others = std::vector<const SeenBody*>;
     struct Part {
         Triangle corners;
-        SurfacePiece piece;  ///< holds it
-        Others others;       ///< those that may hide some of it
+        SurfacePiece piece;  ///< holds the triangle
+        Others others;       ///< the bodies that may hide some of it
     };
 
     Surface(const SeenBody& body, const glm::dmat3& from_unit, bool perspective);
 
-    /// Parts that together hold all that may be seen of it, where `others` may hide it; `most` of them.
+    /// Finds parts that together hold all that may be seen of the surface where `others` may hide it; at most
+    /// `most` of them.
     std::vector<Part> seen(Others others, std::size_t most = SIZE_MAX) const;
     /// May something be seen of where a part passes through another body's surface?
     bool may_show_meeting(const SeenBody& other, const Part& part) const;

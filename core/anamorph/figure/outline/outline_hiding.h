@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one body hides of a limb, or of a line; and which bodies may hide what.
+// Finds what one body hides of a limb, or of a line; and which bodies may hide what.
 #pragma once
 
 #include <span>
@@ -26,21 +26,21 @@ struct ScreenBox {
 /// eye.
 ScreenBox box_of(std::span<const glm::dvec3> points, bool perspective);
 
-/// Does the box of the body's limb overlap, and not all of the body lie beyond?
+/// Does the box of the body's limb overlap this box, and not all of the body lie beyond it?
 bool may_hide(const SeenBody& body, const ScreenBox& box);
 
 /// Finds the bodies that may hide what is in a box.
 class Overlaps {
   public:
-    /// `bodies` must outlive this.
+    /// Prepares the search; `bodies` must outlive this.
     explicit Overlaps(const std::vector<SeenBody>& bodies);
-    /// The order means nothing.
+    /// The bodies that may hide what is in a box, in an order that means nothing.
     std::vector<int> with(const ScreenBox& box) const;
 
   private:
     const std::vector<SeenBody>& m_bodies;
-    std::vector<int> m_by_left;   ///< ordered by the left ends of the limbs
-    std::vector<double> m_right;  ///< the rightmost end of a limb up to there
+    std::vector<int> m_by_left;   ///< the bodies, ordered by the left ends of their limbs
+    std::vector<double> m_right;  ///< the rightmost end of a limb up to each
 };
 
 }  // namespace anamorph::figure

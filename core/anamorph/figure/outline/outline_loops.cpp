@@ -117,9 +117,10 @@ class Sweep {
         return glm::length(pole) > 0x1p-20 * glm::length(toward) ? glm::normalize(pole) : axes[0];
     }
 
-    /// With |u| = 1, f = u Q u + 2 g u + a constant, where Q = matrix^T matrix - s may have any s: the middle
-    /// of the eigenvalues makes it least. Bounds by Q and g are small where the bodies nearly coincide, those
-    /// by v elsewhere. No derivative of u by longitude and latitude is longer than 1.
+    /// Bounds derivatives by the form: with |u| = 1, f = u Q u + 2 g u + a constant, where Q =
+    /// matrix^T matrix - s may have any s: the middle of the eigenvalues makes it least. Bounds by Q and g
+    /// are small where the bodies nearly coincide, those by v elsewhere. No derivative of u by longitude and
+    /// latitude is longer than 1.
     void bound_by_form(const glm::dmat3& axes) {
         const glm::dvec3 large = m_curve.matrix * axes[0], small = m_curve.matrix * axes[2];
         const double most = glm::dot(large, large), least = glm::dot(small, small);
@@ -176,7 +177,7 @@ class Sweep {
         }
     }
 
-    /// The same meridian half a turn on: the latitude runs the other way.
+    /// A meridian half a turn on: the same one, whose latitude runs the other way.
     static Meridian turned(Meridian m) {
         m.longitude += 0.5 * kTurn;
         for (Root& root : m.roots) {

@@ -21,7 +21,7 @@ struct SphereCurve {
     }
 };
 
-/// How far chords may be off, in the sphere's units, within `radius` of u.
+/// The distance, in the sphere's units, that chords within `radius` of u may have from the curve.
 using AllowedDeviation = std::function<double(const glm::dvec3& u, double radius)>;
 
 /// The curve as closed polylines, their points on it, one for each of its loops. Loops may be left out, or

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a point that moves along an ellipse crosses a quadric: the roots in the angle of
+// The crossings of a quadric by a point that moves along an ellipse: the roots in the angle of
 //
 //     f(t) = x^2 + y^2 + z^2 - w^2,   each of x, y, z, w of the form k + c cos(t) + s sin(t).
 //
@@ -18,10 +18,10 @@ struct UnitVector {
         return {cosine * by.cosine - sine * by.sine, sine * by.cosine + cosine * by.sine};
     }
 };
-/// cos(t) and sin(t) to rounding, for 0 <= t < 100.
+/// The direction (cos(t), sin(t)) to rounding, for 0 <= t < 100.
 UnitVector direction(double t);
 
-/// k + c cos(t) + s sin(t).
+/// The function k + c cos(t) + s sin(t) of an angle.
 struct Wave {
     double k = 0, c = 0, s = 0;
 

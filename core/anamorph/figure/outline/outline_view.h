@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a scene is seen: orthographically as NUDES does, or in perspective.
+// The view of a scene: orthographic as in NUDES, or in perspective.
 #pragma once
 
 #include <cmath>

@@ -25,7 +25,7 @@ class StrokePixels {
 
   private:
     Drawing m_drawing;
-    std::vector<Box> m_boxes;  ///< of the strokes
+    std::vector<Box> m_boxes;  ///< boxes around the strokes
 };
 
 }  // namespace anamorph::figure

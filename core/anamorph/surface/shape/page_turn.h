@@ -9,8 +9,8 @@ namespace anamorph::surface::shapes {
 
 /// A sheet that curls round a cylinder of `radius` that rolls over it, towards the viewer: up to the line where
 /// they touch the sheet stays, half a turn of it lies on the cylinder, the rest lies flat above the sheet.
-/// `direction`: where the part that moves lies. `turn`: how far the line has come, from the far corner (0) to where
-/// all of the sheet is turned (1).
+/// `direction`: the direction in which the part that moves lies. `turn`: the way that the line has come, from
+/// the far corner (0) to where all of the sheet is turned (1).
 class PageTurn {
   public:
     explicit PageTurn(const SurfaceShape& shape)

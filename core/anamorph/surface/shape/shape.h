@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surfaces are made of. All lie in a frame with x to the right, y up and z towards the viewer. Parameters
-// (u, v) run over the picture, u to the right and v down, from 0 to 1; undeformed it is `aspect` wide and 1 high,
-// about the origin, in the plane z = 0.
+// The numbers that surfaces are made of. All lie in a frame with x to the right, y up and z towards the
+// viewer. Parameters (u, v) run over the picture, u to the right and v down, from 0 to 1; undeformed it is
+// `aspect` wide and 1 high, about the origin, in the plane z = 0.
 #pragma once
 
 #include "anamorph/number/jet.h"
@@ -32,7 +32,7 @@ struct SurfacePoint {
     T x, y, z;
 };
 
-/// (u, v) in the plane z = 0.
+/// The x coordinate of (u, v) in the plane z = 0; plane_y() is the y coordinate.
 template <class T>
 T plane_x(const SurfaceShape& shape, const T& u) {
     return (u - 0.5) * shape.aspect;

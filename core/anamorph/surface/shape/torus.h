@@ -22,7 +22,7 @@ class Torus {
         const T from_axis = out * m_tube + m_radius;
         return {from_axis * s, up * m_tube, from_axis * c};
     }
-    /// Away from the middle of the tube.
+    /// The direction away from the middle of the tube.
     template <class T>
     SurfacePoint<T> normal(const T& u, const T& v) const {
         T s, c, up, out;
