@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# What tests/run.sh leaves out because it takes hours: long tests, longer fuzzing, sanitizers through all hosts, clang, what the
+# What tests/run.sh leaves out because it takes hours: long tests, fuzzing, sanitizers through all hosts, clang, what the
 # tests of the core cover, clang-tidy, and what became of the last version's binary interface. It says how long each step took; the
 # last line is ctest's own summary.
 . "$(dirname "$0")/steps.sh"
@@ -54,6 +54,7 @@ step abi abi
 step build-paraview build_paraview
 step test-paraview-long run_tests paraview -L nightly
 step build-fuzz build fuzz
+step test-fuzz run_tests fuzz
 step fuzz-long fuzz 120
 step build-asan build asan
 step test-asan run_tests asan

@@ -10,9 +10,6 @@ check_format() {
 }
 
 step format check_format
-step build-fuzz build fuzz
-step fuzz fuzz 5
-step test-fuzz run_tests fuzz
 step build-release build release
 step test-release run_tests release -LE nightly
 # It uses the same folder.

@@ -27,10 +27,12 @@ int unit_of(const OIIO::ImageSpec& spec) {
 
 }  // namespace
 
-FileRows::FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, const Pixels& pixels)
+FileRows::FileRows(Opener open, const std::string& file, int subimage, const OIIO::ImageSpec& spec,
+                   const Pixels& pixels)
     : m_open(std::move(open)),
       m_file(file),
       m_state(file_state(file)),
+      m_subimage(subimage),
       m_spec(spec),
       m_format(pixels.format),
       m_unit(unit_of(spec)),
@@ -74,19 +76,21 @@ void FileRows::decode(int first, int end) {
     // Not every reader finds its way back.
     if (!input || first != m_next) input = m_open();
     if (!input) throw Error(OIIO::geterror());
+    const bool is_there = input->seek_subimage(m_subimage, 0);
     const OIIO::ImageSpec& spec = input->spec();
     const std::string state = file_state(m_file);
-    if (spec.width != m_spec.width || spec.height != m_spec.height || spec.nchannels != m_spec.nchannels ||
-        spec.tile_height != m_spec.tile_height || (!state.empty() && state != m_state))
+    if (!is_there || spec.width != m_spec.width || spec.height != m_spec.height ||
+        spec.nchannels != m_spec.nchannels || spec.tile_height != m_spec.tile_height ||
+        (!state.empty() && state != m_state))
         throw Error("has changed since it was opened");
     // OpenImageIO's pool must not be waited on inside a read of its host.
     input->threads(1);
     std::byte* const to = m_pages.data() + first * m_view.row_stride;
-    const bool done = spec.tile_width > 0
-                          ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end,
-                                              spec.z, spec.z + 1, 0, spec.nchannels, m_format, to)
-                          : input->read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, 0,
-                                                  spec.nchannels, m_format, to);
+    const bool done = spec.tile_width > 0 ? input->read_tiles(m_subimage, 0, spec.x, spec.x + spec.width,
+                                                              spec.y + first, spec.y + end, spec.z,
+                                                              spec.z + 1, 0, spec.nchannels, m_format, to)
+                                          : input->read_scanlines(m_subimage, 0, spec.y + first, spec.y + end,
+                                                                  spec.z, 0, spec.nchannels, m_format, to);
     // Some readers say that all went well and leave an error.
     if (!done || input->has_error()) {
         const std::string why = input->geterror();

@@ -17,7 +17,7 @@
 
 namespace anamorph {
 
-/// The first subimage of a file, row by row, in the file's own order and in a packed type. Rows are decoded when they are
+/// A subimage of a file, row by row, in the file's own order and in a packed type. Rows are decoded when they are
 /// first needed, together with those between them and the rows that are there, so that memory and time are those of
 /// the rows that a view reaches; a format that can only be decoded from its beginning is stopped after the last of them.
 /// Thread safe.
@@ -34,7 +34,8 @@ class FileRows {
     };
     /// Reads nothing yet. `file`: its name. `spec`: that of the file when it was opened. Throws
     /// std::bad_alloc.
-    FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, const Pixels& pixels);
+    FileRows(Opener open, const std::string& file, int subimage, const OIIO::ImageSpec& spec,
+             const Pixels& pixels);
     ~FileRows();
     FileRows(const FileRows&) = delete;
     FileRows& operator=(const FileRows&) = delete;
@@ -54,6 +55,7 @@ class FileRows {
 
     const Opener m_open;
     const std::string m_file, m_state;
+    const int m_subimage;
     const OIIO::ImageSpec m_spec;
     const OIIO::TypeDesc m_format;
     const int m_unit;  ///< rows that are decoded together: whole tiles, if there are any

@@ -110,6 +110,21 @@ std::unique_ptr<OIIO::ImageInput> open_as_cache_does(ImageCache& cache, const st
     return OIIO::ImageInput::open(name, &config);
 }
 
+/// The names of a file's subimages.
+std::vector<std::string> names_of_parts(OIIO::ImageInput& file) {
+    constexpr int kMost = 1 << 16, kMostNamed = 256;
+    std::vector<std::string> names;
+    // A film says how many there are, and takes long to say more of each.
+    if (const int count = file.spec().get_int_attribute("oiio:subimages"); count > kMostNamed) {
+        names.resize(static_cast<std::size_t>(std::min(count, kMost)));
+        return names;
+    }
+    for (int i = 0; i < kMost && file.seek_subimage(i, 0); ++i)
+        names.push_back(file.spec().get_string_attribute("oiio:subimagename"));
+    static_cast<void>(file.geterror());  // one that is not there is no error
+    return names;
+}
+
 /// What a cache tells of a MIP level; no format where it cannot. OpenImageIO 3 has the spec of level 0 only,
 /// so the windows are asked for: x and y of their first and of their last pixels.
 ImageSpec spec_in_cache(ImageCache& cache, OIIO::ustring name, int subimage, int level) {
@@ -256,17 +271,18 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subim
                 [&] { return m_cache->geterror(); });
 }
 
-CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown,
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
                          const SpecOf& spec_of)
-    : CacheSource(std::move(cache), name, shown, 0, 0) {
+    : CacheSource(std::move(cache), name, shown, subimage, 0) {
     read_levels(spec_of, [] { return std::string(); });
 }
 
-CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown)
-    : CacheSource(std::move(cache), name, shown, 0, 0) {
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage)
+    : CacheSource(std::move(cache), name, shown, subimage, 0) {
     const auto file = open_as_cache_does(*m_cache, name);
-    read_levels([&](int level) { return file ? file->spec(0, level) : ImageSpec(); },
+    read_levels([&](int level) { return file ? file->spec(m_subimage, level) : ImageSpec(); },
                 [&] { return file ? file->geterror() : OIIO::geterror(); });
+    m_parts = names_of_parts(*file);
 }
 
 void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not) {
@@ -340,9 +356,9 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
 void CacheSource::keep_rows() try {
     if (levels() > 1 || spec().tile_width > 0) return;
     const std::string& name = m_name.string();
-    m_rows =
-        std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); }, name,
-                                   spec(), FileRows::Pixels{m_type, m_channels, oiio_type(m_type)});
+    m_rows = std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); },
+                                        name, m_subimage, spec(),
+                                        FileRows::Pixels{m_type, m_channels, oiio_type(m_type)});
 } catch (const std::bad_alloc&) {
     // Larger than the address space that is left: by the cache, then.
 }
@@ -357,9 +373,9 @@ void CacheSource::keep_stored(ReadStored read) {
     m_read_stored = std::move(read);
     if (m_read_stored) return;
     const std::string& name = m_name.string();
-    m_rows =
-        std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); }, name,
-                                   spec(), FileRows::Pixels{m_type, m_channels, OIIO::TypeUnknown});
+    m_rows = std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); },
+                                        name, m_subimage, spec(),
+                                        FileRows::Pixels{m_type, m_channels, OIIO::TypeUnknown});
 }
 
 const ConstImageView* CacheSource::view(int) const noexcept {

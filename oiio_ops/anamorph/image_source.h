@@ -75,16 +75,18 @@ class CacheSource final : public Source {
 
     /// A function that gives the spec of a MIP level; one without a format where there is none.
     using SpecOf = std::function<OIIO::ImageSpec(int level)>;
-    /// Opens a file that the cache is asked for as `name` and that messages call `shown`; sizes and metadata
-    /// from `spec_of`, or from the file itself. Neither touches a lock of the cache: a cache that is opening
+    /// Opens a subimage of a file that the cache is asked for as `name` and that messages call `shown`; sizes and
+    /// metadata from `spec_of`, or from the file itself. Neither touches a lock of the cache: a cache that is opening
     /// one of its files would otherwise wait for another, which may wait for the first to be closed.
-    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown,
+    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
                 const SpecOf& spec_of);
-    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown);
+    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage);
 
     const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
     /// The specs of all levels that serve, as the file has them.
     std::vector<OIIO::ImageSpec> specs() const;
+    /// The names of all subimages of the file, where it was asked itself; empty names of those that have none.
+    const std::vector<std::string>& parts() const { return m_parts; }
     /// The reason that the last failed read failed.
     std::string error() const;
 
@@ -130,6 +132,7 @@ class CacheSource final : public Source {
     PixelType m_type = PixelType::float32;
     int m_alpha = -1, m_channels = 0;
     std::vector<Level> m_levels;
+    std::vector<std::string> m_parts;
     std::unique_ptr<FileRows> m_rows;
     ReadStored m_read_stored;
     mutable std::mutex m_mutex;

@@ -143,11 +143,16 @@ class FileInput final : public ImageInput {
 
     bool seek_subimage(int subimage, int miplevel) override {
         const lock_guard lock(*this);
-        if (!m_content || !has_level(*m_content, subimage, miplevel)) return false;
-        if (subimage != m_subimage || miplevel != m_level) m_spec = m_content->spec(subimage, miplevel);
-        m_subimage = subimage;
-        m_level = miplevel;
-        return true;
+        bool is_there = false;
+        // A part of a source is looked at when it is asked for.
+        const bool done = guarded([&] {
+            if (!m_content || !has_level(*m_content, subimage, miplevel)) return;
+            is_there = true;
+            if (subimage != m_subimage || miplevel != m_level) m_spec = m_content->spec(subimage, miplevel);
+            m_subimage = subimage;
+            m_level = miplevel;
+        });
+        return done && is_there;
     }
 
     bool read_native_scanline(int subimage, int miplevel, int y, int, void* data) override {

@@ -83,12 +83,20 @@ std::string cached_name(const std::string& source, const std::string& identity) 
 class Opening {
   public:
     std::shared_ptr<const Content> open(const std::string& name, const std::vector<Assignment>& config);
-    /// A source that is no recipe; its header is read once.
-    std::unique_ptr<CacheSource> open_file(const SideFile& file);
+    /// Opens a part of a source that is no recipe; its header is read once.
+    std::unique_ptr<CacheSource> open_file(const SideFile& file, int part);
+    /// The names of a source's parts, of which there is at least one; recipes give none.
+    std::vector<std::string> parts_of(const SideFile& file);
 
   private:
+    /// What is known of a file.
+    struct Header {
+        std::vector<std::string> parts;
+        std::map<int, std::vector<ImageSpec>> levels;  ///< levels of each part
+    };
+
     RecipeReader m_reader;
-    std::map<std::string, std::vector<ImageSpec>> m_headers;       ///< levels of files, by name
+    std::map<std::string, Header> m_headers;                       ///< headers of files, by name
     std::map<std::string, std::shared_ptr<const Content>> m_open;  ///< by identity
 };
 
@@ -115,21 +123,41 @@ class OpenPictures {
     std::map<std::string, std::weak_ptr<const Content>> m_open;
 };
 
+/// Those sources of a recipe that are given, in the order of their keys.
+std::vector<SideFile> sources_of(const Recipe& recipe) {
+    const std::vector<std::string>& keys = recipe.operation->sources;
+    std::vector<SideFile> sources;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const auto file = recipe.files.find(keys[i]);
+        const bool given = file != recipe.files.end();
+        if (i < recipe.operation->least_sources && !given)
+            throw Error(keys[i] + " is not given: must be the name of an image");
+        if (given && i > sources.size())
+            throw Error(keys[i], printable(file->second.name), "must be given together with " + keys[i - 1]);
+        if (given) sources.push_back(file->second);
+    }
+    return sources;
+}
+
+/// The pictures of one part of a recipe's sources.
 class RecipeContent final : public Content {
   public:
-    RecipeContent(const Recipe& recipe, Opening& opening) {
+    /// `parts`: how many the first source has.
+    RecipeContent(const Recipe& recipe, Opening& opening, int part, int parts) {
         const ParameterValues& values = recipe.values;
         std::vector<OpenSource> images;
         std::vector<ImageSpec> specs;
         std::vector<SourceImage> known;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
-            images.push_back(open_source(file, opening));
+            const int own = images.empty() ? part : part_of_other(file, opening, part);
+            images.push_back(open_source(file, opening, own));
             specs.push_back(images.back().image->spec());
             known.push_back(source_image(upright(specs.back())));
-            identity += file.identity;
+            identity += file.identity + std::to_string(own) + "\n";
         }
         if (!specs.empty()) m_source = upright(specs[0]);
+        if (parts > 1) m_part = std::to_string(part) + " of " + std::to_string(parts);
         std::vector<std::string> missing;
         for (const std::string& key : recipe.linked_images) {
             const SideFile& file = recipe.files.at(key);
@@ -196,61 +224,63 @@ class RecipeContent final : public Content {
     struct OpenSource {
         std::unique_ptr<CacheSource> image;
         std::shared_ptr<const Content> content;  ///< of a recipe
+        int part = 0;
     };
 
     /// A cache would make float of what is stored otherwise; recipes are read by what they show.
     static void keep_stored(const OpenSource& open) {
         if (const std::shared_ptr<const Content> content = open.content)
-            open.image->keep_stored(
-                [content](const Box& box, std::byte* pixels) { content->read(0, 0, box, pixels); });
+            open.image->keep_stored([content, part = open.part](const Box& box, std::byte* pixels) {
+                content->read(part, 0, box, pixels);
+            });
         else
             open.image->keep_stored();
     }
 
     /// A source that is a recipe stays open while this picture is, so that the cache that asks for it by its
     /// name does not make it again.
-    OpenSource open_source(const SideFile& file, Opening& opening) {
-        if (!operation_of(file.name)) return {opening.open_file(file), nullptr};
+    OpenSource open_source(const SideFile& file, Opening& opening, int part) {
+        if (!operation_of(file.name)) return {opening.open_file(file, part), nullptr, part};
         const std::shared_ptr<const Content> content =
             in_recipe(file.name, [&] { return opening.open(file.name, {}); });
         m_nested.push_back(content);
         return {std::make_unique<CacheSource>(
-                    shared_cache(), cached_name(file.name, file.identity), file.name,
+                    shared_cache(), cached_name(file.name, file.identity), file.name, part,
                     [&](int level) {
-                        return level < content->levels(0) ? content->spec(0, level) : ImageSpec();
+                        return level < content->levels(part) ? content->spec(part, level) : ImageSpec();
                     }),
-                content};
+                content, part};
+    }
+
+    /// The part of another source than the first: the same, or the only one.
+    static int part_of_other(const SideFile& file, Opening& opening, int part) {
+        const auto parts = static_cast<int>(opening.parts_of(file).size());
+        if (parts > 1 && part >= parts)
+            throw Error("source \"" + printable(file.name) + "\" has " + std::to_string(parts) +
+                        " parts: must have 1, or as many as the first");
+        return parts > 1 ? part : 0;
     }
 
     OpenSource open_or_none(const SideFile& file, Opening& opening) {
         try {
-            return open_source(file, opening);
+            return open_source(file, opening, 0);
         } catch (const Error&) {
             return {};
         }
-    }
-
-    /// Those that are given, in their order.
-    static std::vector<SideFile> sources_of(const Recipe& recipe) {
-        const std::vector<std::string>& keys = recipe.operation->sources;
-        std::vector<SideFile> sources;
-        for (std::size_t i = 0; i < keys.size(); ++i) {
-            const auto file = recipe.files.find(keys[i]);
-            const bool given = file != recipe.files.end();
-            if (i < recipe.operation->least_sources && !given)
-                throw Error(keys[i] + " is not given: must be the name of an image");
-            if (given && i > sources.size())
-                throw Error(keys[i], printable(file->second.name),
-                            "must be given together with " + keys[i - 1]);
-            if (given) sources.push_back(file->second);
-        }
-        return sources;
     }
 
     static Size tile_of(const ParameterValues& values) {
         if (!values.knows("tile")) return {};
         const Size tile = values.extent("tile");
         return {tile.width, tile.height < 0 ? tile.width : tile.height};
+    }
+
+    /// Of several parts each says which it is, and keeps its name.
+    void say_part(ImageSpec& spec) const {
+        spec.attribute("anamorph:subimage", m_part);
+        for (const char* name : {"oiio:subimagename", "view"})
+            if (const OIIO::ParamValue* own = m_source->find_attribute(name))
+                spec.attribute(name, own->get_string());
     }
 
     static std::shared_ptr<Solved> solve(const Level& level) {
@@ -266,6 +296,7 @@ class RecipeContent final : public Content {
             made.request = *m_pictures->picture(subimage, number);
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
             made.spec = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored);
+            if (!m_part.empty()) say_part(made.spec);
             const bool tiled = m_tile.width > 0 && m_tile.height > 0;
             made.spec.tile_width = tiled ? m_tile.width : 0;
             made.spec.tile_height = tiled ? m_tile.height : 0;
@@ -275,7 +306,8 @@ class RecipeContent final : public Content {
 
     std::optional<ImageSpec> m_source;  ///< of the first source, upright
     std::unique_ptr<const Pictures> m_pictures;
-    std::string m_key;  ///< of the operation
+    std::string m_key;   ///< of the operation
+    std::string m_part;  ///< which of several parts is drawn, "0 of 3"
     std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
@@ -285,28 +317,106 @@ class RecipeContent final : public Content {
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level
 };
 
+/// The pictures of all parts of a recipe's source, one after the other. The last few are kept.
+class PartsContent final : public Content {
+  public:
+    PartsContent(const Recipe& recipe, int count) : m_recipe(recipe), m_count(count) {}
+
+    int subimages() const override { return m_count; }
+    int levels(int subimage) const override { return part(subimage)->levels(0); }
+    const ImageSpec& spec(int subimage, int level) const override {
+        const std::lock_guard lock(m_mutex);
+        const auto found = m_specs.find({subimage, level});
+        if (found != m_specs.end()) return found->second;
+        return m_specs[{subimage, level}] = part(subimage)->spec(0, level);
+    }
+    void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
+        part(subimage)->read(0, level, box, pixels);
+    }
+
+    /// The picture of one part, made by an opening that goes on or one of its own.
+    std::shared_ptr<const RecipeContent> part(int i, Opening* opening = nullptr) const {
+        return m_parts.get(std::to_string(i), [&] {
+            Opening own;
+            return std::make_shared<const RecipeContent>(m_recipe, opening ? *opening : own, i, m_count);
+        });
+    }
+
+  private:
+    static constexpr std::size_t kKept = 4;
+
+    Recipe m_recipe;
+    int m_count;
+    mutable Memo<const RecipeContent> m_parts{kKept};
+    mutable std::mutex m_mutex;
+    mutable std::map<std::pair<int, int>, ImageSpec> m_specs;  ///< by part and level
+};
+
+/// The part that `asked` names, by its name or number.
+int part_named(const std::string& asked, const std::vector<std::string>& parts) {
+    const auto found = std::find(parts.begin(), parts.end(), asked);
+    if (found != parts.end() && !asked.empty()) return static_cast<int>(found - parts.begin());
+    const bool is_number =
+        !asked.empty() && asked.size() < 9 && asked.find_first_not_of("0123456789") == std::string::npos;
+    if (is_number && std::stoul(asked) < parts.size()) return std::stoi(asked);
+    std::string names;
+    for (const std::string& name : parts)
+        if (!name.empty()) names += (names.empty() ? ", or one of " : ", ") + printable(name);
+    throw Error("subimage", printable(asked),
+                "must be an integer from 0 to " + std::to_string(parts.size() - 1) + names);
+}
+
+/// What a recipe shows: the pictures of one part of its source, or of all.
+std::shared_ptr<const Content> content_of(const Recipe& recipe, Opening& opening) {
+    const std::vector<SideFile> sources = sources_of(recipe);
+    if (sources.empty()) return std::make_shared<const RecipeContent>(recipe, opening, 0, 1);
+    const std::vector<std::string> parts = opening.parts_of(sources[0]);
+    const auto count = static_cast<int>(parts.size());
+    const bool is_asked = recipe.values.knows("subimage") && recipe.values.given("subimage");
+    if (is_asked || count == 1)
+        return std::make_shared<const RecipeContent>(
+            recipe, opening, is_asked ? part_named(recipe.values.text("subimage"), parts) : 0, count);
+    auto all = std::make_shared<const PartsContent>(recipe, count);
+    const std::shared_ptr<const RecipeContent> first = all->part(0, &opening);
+    if (first->subimages() > 1) return first;
+    return all;
+}
+
 std::shared_ptr<const Content> Opening::open(const std::string& name, const std::vector<Assignment>& config) {
     const Recipe recipe = m_reader.load(name, config);
     std::shared_ptr<const Content>& content = m_open[recipe.identity];
     if (!content) content = OpenPictures::instance().find(recipe.identity);
     if (content) return content;
-    auto made = std::make_shared<const RecipeContent>(recipe, *this);
+    std::shared_ptr<const Content> made = content_of(recipe, *this);
     OpenPictures::instance().add(recipe.identity, made);
     return m_open[recipe.identity] = made;
 }
 
-std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file) {
+std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file, int part) {
     const std::string name = cached_name(file.name, file.identity);
-    const auto known = m_headers.find(file.name);
-    const bool is_new = known == m_headers.end();
-    auto source = is_new ? std::make_unique<CacheSource>(shared_cache(), name, file.name)
-                         : std::make_unique<CacheSource>(shared_cache(), name, file.name, [&](int level) {
-                               const auto i = static_cast<std::size_t>(level);
-                               return i < known->second.size() ? known->second[i] : ImageSpec();
-                           });
-    if (is_new) m_headers[file.name] = source->specs();
+    Header& header = m_headers[file.name];
+    const auto known = header.levels.find(part);
+    const bool is_new = known == header.levels.end();
+    auto source = is_new
+                      ? std::make_unique<CacheSource>(shared_cache(), name, file.name, part)
+                      : std::make_unique<CacheSource>(shared_cache(), name, file.name, part, [&](int level) {
+                            const auto i = static_cast<std::size_t>(level);
+                            return i < known->second.size() ? known->second[i] : ImageSpec();
+                        });
+    if (is_new) {
+        header.levels[part] = source->specs();
+        header.parts = source->parts();
+    }
     source->keep_rows();
     return source;
+}
+
+std::vector<std::string> Opening::parts_of(const SideFile& file) {
+    if (operation_of(file.name))
+        return std::vector<std::string>(
+            static_cast<std::size_t>(in_recipe(file.name, [&] { return open(file.name, {}); })->subimages()));
+    if (m_headers[file.name].parts.empty()) open_file(file, 0);
+    return m_headers[file.name].parts;
 }
 
 }  // namespace

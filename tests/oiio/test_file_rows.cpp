@@ -46,7 +46,7 @@ class FileRowsOf : public InFolder, public testing::WithParamInterface<const cha
         write_image(panorama(kWidth, kHeight, floats ? OIIO::TypeHalf : OIIO::TypeUInt8), file.name);
         want = read_pixels(file.name);
     }
-    FileRows rows() { return {file.opener(), file.name, want.spec, pixels_of(want.spec)}; }
+    FileRows rows() { return {file.opener(), file.name, 0, want.spec, pixels_of(want.spec)}; }
     /// Row y of what is there.
     bool equal(const FileRows& rows, int y) const {
         const auto row = static_cast<std::size_t>(rows.view().row_stride);
@@ -117,14 +117,14 @@ TEST_P(FileRowsOf, SayWhyTheyCannotBeRead) {
     EXPECT_THAT([&] { changed.need(0, 10); },
                 testing::ThrowsMessage<Error>("has changed since it was opened"));
     // Another file of the same size, after the first rows of the one before.
-    FileRows replaced(file.opener(), file.name, read_pixels(file.name).spec, pixels_of(want.spec));
+    FileRows replaced(file.opener(), file.name, 0, read_pixels(file.name).spec, pixels_of(want.spec));
     replaced.need(100, 110);
     write_image(panorama(kWidth, kHeight / 2, OIIO::TypeUInt8), "other" + file.name);
     std::filesystem::rename("other" + file.name, file.name);
     EXPECT_THAT([&] { replaced.need(300, 310); },
                 testing::ThrowsMessage<Error>("has changed since it was opened"));
 
-    FileRows away(file.opener(), file.name, read_pixels(file.name).spec, pixels_of(want.spec));
+    FileRows away(file.opener(), file.name, 0, read_pixels(file.name).spec, pixels_of(want.spec));
     std::filesystem::rename(file.name, "away");
     EXPECT_THROW(away.need(0, 10), Error);
     std::filesystem::rename("away", file.name);
@@ -139,7 +139,7 @@ TEST(FileRows, SayWhichFilesAreDamaged) {
         Counted file{name};
         const OIIO::ImageSpec spec = read_pixels(name).spec;
         std::filesystem::resize_file(name, std::filesystem::file_size(name) * 6 / 10);
-        FileRows rows(file.opener(), name, spec, pixels_of(spec));
+        FileRows rows(file.opener(), name, 0, spec, pixels_of(spec));
         EXPECT_THROW(rows.need(kHeight - 10, kHeight), Error);
         const int before = file.opened;
         EXPECT_THROW(rows.need(kHeight - 20, kHeight - 10), Error);

@@ -68,6 +68,7 @@ ParameterTable view_rows() {
         number("extent", "", "", 1e-6, kFarthest,
                "width of a parallel view; by default that of the flat picture"),
         size("width and height of the picture, or its width alone; by default the source's"),
+        subimage(),
         tile(),
         mip(),
     };

@@ -36,6 +36,7 @@ ParameterTable make_lens_table() {
                      "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
                      "what the image says of itself, for brown also by Exif's focal length")),
         extent,
+        subimage(),
         tile(),
         mip(),
         filter(),

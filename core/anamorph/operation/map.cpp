@@ -29,6 +29,7 @@ ParameterTable make_map_table() {
         number("frame", "", "0", -1e9, 1e9, "the number that frame is in the formulas"),
         size("width and height of the picture, or its width alone, in the source's shape; by default the "
              "source's"),
+        subimage(),
         tile(),
         mip(),
         filter(),

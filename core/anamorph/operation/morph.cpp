@@ -49,6 +49,7 @@ ParameterTable make_morph_table() {
             "pin_border", "", "", 0, kInfinity,
             "holds the picture's border with lines of this weight; 0: not; by default as the features say"),
         size("width and height of the picture, or its width alone; by default those of a"),
+        subimage(),
         tile(),
         mip(),
         filter(),

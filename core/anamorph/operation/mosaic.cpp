@@ -61,6 +61,7 @@ ParameterTable make_mosaic_table() {
         as_pano("roll"),
         as_pano("lens"),
         as_pano("size"),
+        subimage(),
         tile(),
         mip(),
         filter(),

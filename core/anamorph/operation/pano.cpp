@@ -89,6 +89,7 @@ ParameterTable make_pano_table() {
              "pixels; by default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
+        subimage(),
         tile(),
         mip(),
         filter(),

@@ -142,6 +142,13 @@ Parameter size(const std::string& doc) {
     return extent("size", "", 1, kMaxSide, doc);
 }
 
+Parameter subimage() {
+    return text(
+        "subimage",
+        "of a source of several parts, pages or frames, the one that is drawn: its number, from 0, or its "
+        "name; by default all of them, one after the other, and of a film the first");
+}
+
 Parameter tile() {
     return extent("tile", "256", 0, kMaxTile, "tile size that a host is told; 0 for scanlines");
 }

@@ -52,6 +52,7 @@ Parameter image(const char* name, const std::string& doc);
 Parameter file(const char* name, const std::string& doc);
 
 Parameter size(const std::string& doc);
+Parameter subimage();
 Parameter tile();
 Parameter mip();
 Parameter tol();

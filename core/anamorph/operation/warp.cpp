@@ -35,6 +35,7 @@ ParameterTable make_warp_table() {
                "how far every vertex is moved: 0 not at all, 1 as given, any other as far in proportion"),
         size("width and height of the picture, or its width alone; by default the source's, of an ST-map "
              "that pulls its own"),
+        subimage(),
         tile(),
         mip(),
         filter(),
