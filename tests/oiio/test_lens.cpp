@@ -148,6 +148,20 @@ TEST_F(LensRecipe, PixelsBeyondTheFormatAreSeen) {
                 }
         }
     }
+    // Far beyond it too, where blocks of nothing else are left out.
+    OIIO::ImageSpec wide(1000, 60, 3, OIIO::TypeHalf);
+    wide.x = -900;
+    wide.full_width = wide.full_height = 60;
+    OIIO::ImageBuf strip(wide);
+    const float white[] = {1, 1, 1};
+    OIIO::ImageBufAlgo::fill(strip, white);
+    write_image(strip, "wide.exr");
+    for (const char* recipe :
+         {"wide.exr.map?u=x-880&size=900x60", "wide.exr.lens?lens=3de4:k1=-0.0001&size=1800x60",
+          "wide.exr.pano?from=rectilinear&srcfov=10&fov=80&yaw=-45&size=300x10"}) {
+        const std::vector<float> seen = read_floats(recipe);
+        EXPECT_EQ(seen[3 * 5], 1) << recipe;
+    }
     // A recipe reads what is beyond the format of another's picture.
     const std::vector<float> twice =
         read_floats("x.lens?lens=3de4:k1=0.02&src=over.exr.lens?lens=3de4:k1=-0.1&size=all");
