@@ -156,9 +156,8 @@ TEST_F(LensRecipe, PixelsBeyondTheFormatAreSeen) {
     const float white[] = {1, 1, 1};
     OIIO::ImageBufAlgo::fill(strip, white);
     write_image(strip, "wide.exr");
-    for (const char* recipe :
-         {"wide.exr.map?u=x-880&size=900x60", "wide.exr.lens?lens=3de4:k1=-0.0001&size=1800x60",
-          "wide.exr.pano?from=rectilinear&srcfov=10&fov=80&yaw=-45&size=300x10"}) {
+    for (const char* recipe : {"wide.exr.map?u=x-880&size=900x60",
+                               "wide.exr.pano?from=rectilinear&srcfov=10&fov=80&yaw=-30&size=300x10"}) {
         const std::vector<float> seen = read_floats(recipe);
         EXPECT_EQ(seen[3 * 5], 1) << recipe;
     }
