@@ -156,12 +156,12 @@ TEST(FormulaPlan, SharedRoundingIsThatOfEveryPart) {
     const auto alone = polynomials.bound_of(known);
     EXPECT_EQ(alone.rounding, HUGE_VAL);
     using Parts = PolynomialStrategy<Lens>::Parts;
-    for (const auto& [width, height] : {std::pair{16, 16}, {32, 8}, {64, 16}}) {
-        const Parts parts{width, height, Parts::placed};
+    for (const Size& size : {Size{16, 16}, Size{32, 8}, Size{64, 16}}) {
+        const Parts parts{size.width, size.height, Parts::placed};
         const double shared = polynomials.with_rounding(alone, block, parts, place.local).rounding;
         double most = 0;
-        for_boxes(block, width, height, [&](const Box& part) {
-            const double own = bounds.rounding_over(part, half(width), half(height), place.local);
+        for_boxes(block, size.width, size.height, [&](const Box& part) {
+            const double own = bounds.rounding_over(part, half(size.width), half(size.height), place.local);
             EXPECT_LE(own, shared * (1 + 1e-12));
             most = std::max(most, own);
         });

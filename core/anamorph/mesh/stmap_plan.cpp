@@ -165,8 +165,11 @@ Jacobian StMapPlan::jacobian_by_neighbors(int column, int row) const {
         if (std::isnan(after.x)) return here - before;
         return std::isnan(before.x) ? after - here : (after - before) * 0.5;
     };
-    const Point<double> across = step(at(column - 1, row), at(column + 1, row)),
-                        down = step(at(column, row - 1), at(column, row + 1));
+    Point<double> across = step(at(column - 1, row), at(column + 1, row)),
+                  down = step(at(column, row - 1), at(column, row + 1));
+    // Between two holes: as long as the other, and square to it.
+    if (std::isnan(across.x)) across = {down.y, -down.x};
+    if (std::isnan(down.x)) down = {-across.y, across.x};
     return {across.x, across.y, down.x, down.y};
 }
 
