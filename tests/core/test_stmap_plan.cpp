@@ -33,16 +33,16 @@ std::vector<float> bent_map(double noise) {
     return uv;
 }
 
-WarpMap map_of(const std::vector<float>& uv) {
-    return mesh_from_stmap(uv, kTarget.width, kTarget.height, "st.exr");
+WarpMap map_of(const std::vector<float>& uv, bool v_up = false) {
+    return mesh_from_stmap(uv, kTarget.width, kTarget.height, "st.exr", v_up);
 }
 const ControlMesh& mesh_of(const WarpMap& map) {
     return std::get<ControlMesh>(map.shape);
 }
 
-long double place(float sample, int from, int to, double centre, double amount) {
+long double place(long double sample, int from, int to, double centre, double amount) {
     const long double here = static_cast<long double>(centre) * to / from;
-    const long double there = static_cast<long double>(sample) * to;
+    const long double there = sample * to;
     // Not even in long double is `here` added and taken off without rounding.
     return amount == 1 ? there : here + (there - here) * static_cast<long double>(amount);
 }
@@ -70,32 +70,34 @@ TEST(StMapPlan, SaysWhatTheSamplesSay) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     for (const double noise : {0.0, 0.01, 30.0})
         for (const double amount : {1.0, 0.3, -2.0, 1e-9})
-            for (const double tol : {0.0, 1e-5, 0.01}) {
-                const std::vector<float> uv = bent_map(noise);
-                const WarpMap map = map_of(uv);
-                ASSERT_TRUE(StMapPlan::serves(mesh_of(map), kTarget));
-                const StMapPlan plan(mesh_of(map), kTarget, kSource, amount, WarpScheme::automatic, tol,
-                                     "st");
-                int pixels = 0, computed = 0;
-                each_pixel(plan, [&](const Block& block, int x, int y, const Point<double>& p) {
-                    const float* at = &uv[2 * static_cast<std::size_t>(y * kTarget.width + x)];
-                    const auto off = static_cast<double>(
-                        std::hypot(p.x - place(at[0], kTarget.width, kSource.width, x + 0.5, amount),
-                                   p.y - place(at[1], kTarget.height, kSource.height, y + 0.5, amount)));
-                    ASSERT_LE(off, block.bound) << x << ", " << y << " amount " << amount;
-                    ASSERT_TRUE(is_exact(block) || block.bound <= tol);
-                    ++pixels;
-                    computed += !is_exact(block);
-                });
-                EXPECT_EQ(pixels, kTarget.width * kTarget.height);
-                if (tol == 0.01 && noise < 1) {
-                    EXPECT_EQ(computed, pixels);
+            for (const double tol : {0.0, 1e-5, 0.01})
+                for (const bool v_up : {false, true}) {
+                    const std::vector<float> uv = bent_map(noise);
+                    const WarpMap map = map_of(uv, v_up);
+                    ASSERT_TRUE(StMapPlan::serves(mesh_of(map), kTarget));
+                    const StMapPlan plan(mesh_of(map), kTarget, kSource, amount, WarpScheme::automatic, tol,
+                                         "st");
+                    int pixels = 0, computed = 0;
+                    each_pixel(plan, [&](const Block& block, int x, int y, const Point<double>& p) {
+                        const float* at = &uv[2 * static_cast<std::size_t>(y * kTarget.width + x)];
+                        const long double v = v_up ? 1 - static_cast<long double>(at[1]) : at[1];
+                        const auto off = static_cast<double>(
+                            std::hypot(p.x - place(at[0], kTarget.width, kSource.width, x + 0.5, amount),
+                                       p.y - place(v, kTarget.height, kSource.height, y + 0.5, amount)));
+                        ASSERT_LE(off, block.bound) << x << ", " << y << " amount " << amount;
+                        ASSERT_TRUE(is_exact(block) || block.bound <= tol);
+                        ++pixels;
+                        computed += !is_exact(block);
+                    });
+                    EXPECT_EQ(pixels, kTarget.width * kTarget.height);
+                    if (tol == 0.01 && noise < 1) {
+                        EXPECT_EQ(computed, pixels);
+                    }
                 }
-            }
 }
 
 TEST(StMapPlan, BetweenSamplesAndInDerivativesItIsTheirMesh) {
-    const WarpMap map = map_of(bent_map(0.01));
+    const WarpMap map = map_of(bent_map(0.01), true);
     const StMapPlan plan(mesh_of(map), kTarget, kSource, 0.7, WarpScheme::automatic, 0.01, "st");
     const MeshPlan mesh(Mesh(mesh_of(map), kTarget, kSource, 0.7), WarpScheme::automatic, 0.01);
     for (const double x : {0.0, 0.2, 0.5, 17.5, 40.25, 140.5, 140.9, 141.0})
@@ -129,15 +131,8 @@ TEST(StMapPlan, OtherSizesAndDirectionsAreMeshes) {
     EXPECT_GE(warped_picture(map, kTarget, {50, 40}, {}).reached().max_error, 0);
 }
 
-TEST(StMapPlan, RefusesWhatIsNoNumberOrTooFar) {
+TEST(StMapPlan, RefusesWhatIsTooFarOrTooShort) {
     std::vector<float> uv = bent_map(0);
-    uv[2 * (3 * kTarget.width + 7) + 1] = HUGE_VALF;
-    try {
-        map_of(uv);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("st.exr: pixel [7, 3]"), std::string::npos) << error.what();
-    }
     uv[2 * (3 * kTarget.width + 7) + 1] = 1e8f;
     const WarpMap far = map_of(uv);
     EXPECT_THROW(warped_picture(far, kSource, kTarget, {}), Error);

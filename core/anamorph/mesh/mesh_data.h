@@ -24,12 +24,19 @@ enum class Units { pixels, fractions };
 /// from. push: the mesh lies in the source image, and its vertices, which one drags, say where in the target they go.
 enum class Direction { pull, push };
 
-/// The pixels of an ST-map: u and v of each pixel, in fractions, row by row from the top left; both are NaN in a hole, a pixel
-/// that comes from nowhere.
+/// The pixels of an ST-map: u and v of each pixel, in fractions, row by row from the top left; both are NaN in
+/// a hole, a pixel that comes from nowhere.
 struct StSamples {
     std::vector<float> uv;
-    double most = 0;         ///< the largest magnitude in uv
+    double most = 0;         ///< the largest magnitude in uv, and of v counted from the top
     std::int64_t holes = 0;  ///< pixels that are holes
+    bool v_up = false;       ///< does v go up, from 0 at the lower edge?
+
+    /// The position that pixel i says, v down.
+    Point<double> position(std::size_t i) const {
+        const double v = uv[2 * i + 1];
+        return {uv[2 * i], v_up ? 1 - v : v};
+    }
 };
 
 /// A rectangular mesh of columns x rows cells, any of which may be subdivided into four, to any depth.
@@ -53,9 +60,7 @@ struct ControlMesh {
     /// The number of vertices of level 0, given in `vertices` or in `samples`.
     std::size_t vertex_count() const { return samples ? samples->uv.size() / 2 : vertices.size(); }
     /// Vertex i of level 0, from the top left.
-    Point<double> vertex(std::size_t i) const {
-        return samples ? Point<double>{samples->uv[2 * i], samples->uv[2 * i + 1]} : vertices[i];
-    }
+    Point<double> vertex(std::size_t i) const { return samples ? samples->position(i) : vertices[i]; }
     /// The positions of the lines of the mesh: columns + 1 and rows + 1 ascending positions. When empty, the
     /// lines are spread evenly from edge to edge of the image. Between the outermost lines and the edges the
     /// map goes on linearly.

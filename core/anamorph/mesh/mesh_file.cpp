@@ -275,7 +275,7 @@ void find_holes(StSamples& samples) {
 }  // namespace
 
 WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
-                        std::ptrdiff_t row_stride, int step, std::string_view name) {
+                        std::ptrdiff_t row_stride, int step, std::string_view name, bool v_up) {
     check_stmap(width, height, step, name);
     const std::vector<int> columns = pixels_taken(width, step), rows = pixels_taken(height, step);
     ControlMesh mesh = stmap_lines(width, height, columns, rows, name);
@@ -284,12 +284,12 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
         for (const int x : columns) {
             const float* at = uv + y * row_stride + x * pixel_stride;
             check_finite(at, x, y, name);
-            mesh.vertices.push_back({at[0], at[1]});
+            mesh.vertices.push_back({at[0], v_up ? 1 - double{at[1]} : at[1]});
         }
     return {excerpt(name), std::move(mesh)};
 }
 
-WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name) {
+WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name, bool v_up) {
     check_stmap(width, height, 1, name);
     ControlMesh mesh = stmap_lines(width, height, pixels_taken(width, 1), pixels_taken(height, 1), name);
     const std::size_t numbers = 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -303,6 +303,8 @@ WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::strin
     if (samples.holes == static_cast<std::int64_t>(numbers / 2))
         throw Error(excerpt(name) +
                     " has no pixel that comes from anywhere: must have u and v that are finite");
+    samples.v_up = v_up;
+    if (v_up) samples.most += 1;
     mesh.samples = std::make_shared<StSamples>(std::move(samples));
     return {excerpt(name), std::move(mesh)};
 }

@@ -50,11 +50,13 @@ inline constexpr int kMostStMapSide = 1 << 20;
 /// Makes a pull mesh from an ST-map: pixel (i, j) of an image of width x height says where in the source the centre
 /// of that pixel (of an image that covers the target) comes from, as fractions (u right, v down, edge to
 /// edge). `uv` points at u of pixel (0, 0); v stands behind u, pixels `pixel_stride` and rows `row_stride`
-/// floats apart. Every `step`-th pixel is taken, and the last of each row and column; 1 takes all.
+/// floats apart. Every `step`-th pixel is taken, and the last of each row and column; 1 takes all. With `v_up` v goes
+/// up, from 0 at the lower edge.
 WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
-                        std::ptrdiff_t row_stride, int step, std::string_view name);
-/// A pull mesh from every pixel of an ST-map of two channels, without gaps, which it keeps. A pixel whose u or v is not a
-/// finite number is a hole. Throws Error where all are.
-WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name);
+                        std::ptrdiff_t row_stride, int step, std::string_view name, bool v_up = false);
+/// Makes a pull mesh from every pixel of an ST-map of two channels, without gaps, which it keeps. A pixel whose u or v
+/// is not a finite number is a hole. Throws Error where all are.
+WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name,
+                        bool v_up = false);
 
 }  // namespace anamorph

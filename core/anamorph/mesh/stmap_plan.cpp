@@ -49,11 +49,12 @@ const float* StMapPlan::sample(int column, int row) const {
     return m_samples->uv.data() + 2 * (std::ptrdiff_t{row} * width() + column);
 }
 
-/// Where a pixel comes from; without rounding where `amount` is 1, since u is a float and the source's width
-/// has 21 bits.
+/// Where a pixel comes from; without rounding where `amount` is 1 and v goes down, since u is a float and the
+/// source's width has 21 bits.
 Point<double> StMapPlan::point(int column, int row) const {
-    const float* at = sample(column, row);
-    const Point<double> there{double{at[0]} * m_source.width, double{at[1]} * m_source.height};
+    const Point<double> at =
+        m_samples->position(static_cast<std::size_t>(std::int64_t{row} * width() + column));
+    const Point<double> there{at.x * m_source.width, at.y * m_source.height};
     if (m_amount == 1) return there;
     const Point<double> here{(column + 0.5) * m_scale.x, (row + 0.5) * m_scale.y};
     return {here.x + (there.x - here.x) * m_amount, here.y + (there.y - here.y) * m_amount};
@@ -101,7 +102,7 @@ void StMapPlan::exact_rows(const Block& block, int begin, int end, const DoubleR
 /// The rounding of a pixel's point in double, computed in either way: products and sums of its place and its
 /// sample's, 8 u of them at most.
 double StMapPlan::rounding() const {
-    if (m_amount == 1) return 0;
+    if (m_amount == 1 && !m_samples->v_up) return 0;
     const double place = std::max(m_source.width, m_source.height) * (1 + m_samples->most);
     return 1.4143 * 8 * 0x1p-53 * (1 + std::fabs(m_amount)) * place;
 }
@@ -114,7 +115,8 @@ void StMapPlan::plan(const Box& box, int, Blocks& blocks) const {
         for (int y = b.y0; m_tol > 0 && y < b.y1; ++y) simd::extend_range(sample(b.x0, y), b.width(), range);
         // The middle of a range of places and half of it, the identity's part of them included.
         const auto span = [&](int k, double size, double from, double to) {
-            const double there = 0.5 * (double{range.high[k]} + double{range.low[k]}) * size,
+            const double middle = 0.5 * (double{range.high[k]} + double{range.low[k]});
+            const double there = (k == 1 && m_samples->v_up ? 1 - middle : middle) * size,
                          half_there = 0.5 * (double{range.high[k]} - double{range.low[k]}) * size;
             return Point<double>{
                 there * m_amount + 0.5 * (from + to) * (1 - m_amount),
@@ -136,7 +138,10 @@ void StMapPlan::computed_row(const Block& block, int row, int begin, int end, fl
     const double rest = 1 - m_amount;
     const simd::SampleAxis across{m_source.width * m_amount, (column + 0.5) * m_scale.x * rest - block.base_x,
                                   m_scale.x * rest},
-        down{m_source.height * m_amount, (line + 0.5) * m_scale.y * rest - block.base_y, 0};
+        down{m_source.height * m_amount * (m_samples->v_up ? -1 : 1),
+             (line + 0.5) * m_scale.y * rest - block.base_y +
+                 (m_samples->v_up ? m_source.height * m_amount : 0),
+             0};
     simd::sample_places(sample(column, line), end - begin, across, down, x, y);
 }
 

@@ -158,10 +158,9 @@ WarpMap read_stmap(const std::string& name, const StMapReading& how, const SideF
         throw Error(what + " has " + shape + " pixels: must have at most " +
                     std::to_string(kMostStMapVertices));
     std::vector<float> uv = read_uv(*image);
-    for (std::size_t i = 1; how.flip_v && i < uv.size(); i += 2) uv[i] = 1 - uv[i];
-    WarpMap map = how.step == 1 ? mesh_from_stmap(std::move(uv), size.width, size.height, name)
+    WarpMap map = how.step == 1 ? mesh_from_stmap(std::move(uv), size.width, size.height, name, how.flip_v)
                                 : mesh_from_stmap(uv.data(), size.width, size.height, 2,
-                                                  std::ptrdiff_t{2} * size.width, how.step, name);
+                                                  std::ptrdiff_t{2} * size.width, how.step, name, how.flip_v);
     if (!(image->display() == Box{0, 0, size.width, size.height}))
         std::get<ControlMesh>(map.shape).display = image->display();
     return map;
