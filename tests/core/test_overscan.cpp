@@ -176,6 +176,40 @@ TEST(Overscan, OutermostTexelsOfLevelsAreFadedWhereTheyAreNotFull) {
         }
 }
 
+// What is faded at the outermost texels of a level does not get into a picture that goes on beyond them.
+TEST(Overscan, NoEdgeIsSeenInAPictureOfOneColor) {
+    for (const int more : {1, 2, 3, 10, 37}) {
+        const Size shown{301, 203}, all{shown.width + 2 * more, shown.height + 2 * more};
+        const std::vector<float> ones(static_cast<std::size_t>(all.width * all.height), 1.0f);
+        const Framed part(packed_view(reinterpret_cast<const std::byte*>(ones.data()), PixelType::float32,
+                                      all.width, all.height, 1),
+                          {more, more, more + shown.width, more + shown.height});
+        const Pyramid pyramid(part);
+        for (int level = 0; level < pyramid.levels(); ++level) {
+            const SourceLevel of = pyramid.level(level);
+            const Box display{0, 0, of.size.width, of.size.height};
+            ASSERT_EQ(intersection(of.whole, display), display);
+            ASSERT_EQ(intersection(of.whole, of.extent), of.whole);
+            const std::vector<std::byte> texels = texels_of(pyramid, level, of.whole);
+            for (std::size_t i = 0; i < texels.size(); i += 4)
+                ASSERT_NEAR(load_channel(&texels[i], PixelType::float32), 1, 1e-6);
+        }
+        ControlMesh mesh;
+        mesh.vertices = {{-100, -70}, {410, -60}, {-90, 290}, {390, 300}};
+        MeshWarpOptions options;
+        for (const Wrap wrap : {Wrap::clamp, Wrap::periodic, Wrap::mirror})
+            for (const Size& target : {Size{150, 100}, Size{61, 43}, Size{20, 14}}) {
+                options.wrap = wrap;
+                const Picture picture = warped_picture({"one", mesh}, shown, target, options);
+                std::vector<float> values(static_cast<std::size_t>(target.width * target.height));
+                ASSERT_TRUE(picture.draw(&pyramid, {0, 0, target.width, target.height},
+                                         packed_view(reinterpret_cast<std::byte*>(values.data()),
+                                                     PixelType::float32, target.width, target.height, 1)));
+                for (const float value : values) ASSERT_NEAR(value, 1, 1e-5) << more << " " << target.width;
+            }
+    }
+}
+
 TEST(Overscan, SumsAreThoseOfTheLargerPicture) {
     const Large large({60, 40}, PixelType::uint8, 3);
     const Box shown{10, 6, 45, 33};

@@ -181,7 +181,9 @@ Box Border::interior(int piece, const SourceLevel& level) const noexcept {
     const bool is_round = has_rounded_edge(m_chart);
     if (m_wrap == Wrap::automatic && is_round) return RoundedEdge(m_chart, level.size).middle();
     const bool has_edges = m_chart.pieces().size() == 1 && !m_chart.closed() && !is_round;
-    return has_edges ? level.extent : face(piece, level.size);
+    if (!has_edges) return face(piece, level.size);
+    // What is faded toward black belongs to a black border only.
+    return m_wrap == Wrap::black || m_wrap == Wrap::automatic ? level.extent : level.whole;
 }
 
 int Border::turn(const Size& level) const noexcept {

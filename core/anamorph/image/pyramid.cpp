@@ -15,23 +15,6 @@
 namespace anamorph {
 namespace {
 
-/// a / b, rounded down.
-std::int64_t floor_of(std::int64_t a, std::int64_t b) {
-    return a / b - (a % b < 0 ? 1 : 0);
-}
-
-/// The texels of a coarser level that have any of a box of the finer one.
-Box coarser_box(const Box& box, const Size& fine, const Size& coarse) {
-    const auto first = [](std::int64_t edge, int from, int to) {
-        return static_cast<int>(floor_of(edge * to, from));
-    };
-    const auto end = [](std::int64_t edge, int from, int to) {
-        return static_cast<int>(-floor_of(-edge * to, from));
-    };
-    return {first(box.x0, fine.width, coarse.width), first(box.y0, fine.height, coarse.height),
-            end(box.x1, fine.width, coarse.width), end(box.y1, fine.height, coarse.height)};
-}
-
 /// The texels of the finer level that one texel of the coarser one averages, along one axis: 2 to 4.
 struct Span {
     int first, count;
@@ -41,7 +24,7 @@ struct Span {
 /// Texel `i` of `coarse` covers [i r, (i + 1) r) of `fine`, r = fine / coarse; here in units of 1 / coarse.
 Span span_of(std::int64_t i, std::int64_t fine, std::int64_t coarse) {
     const std::int64_t from = i * fine, to = from + fine;
-    Span span{static_cast<int>(floor_of(from, coarse)), 0, {}};
+    Span span{static_cast<int>(from / coarse - (from % coarse < 0 ? 1 : 0)), 0, {}};
     for (std::int64_t k = span.first; k * coarse < to; ++k) {
         const std::int64_t overlap = std::min((k + 1) * coarse, to) - std::max(k * coarse, from);
         span.weight[static_cast<std::size_t>(span.count++)] =
@@ -186,7 +169,7 @@ Pyramid::Pyramid(const Source& base, int columns, int rows) : m_base(base) {
         const Size size = finer.size, next{size.width / 2, size.height / 2};
         if (next.width / columns < kLeast || next.height / rows < kLeast) return;
         if (pieces && (size.width % (2 * columns) != 0 || size.height % (2 * rows) != 0)) return;
-        finer = {next, coarser_box(finer.extent, size, next)};
+        finer = {next, texels_over(finer.extent, size, next)};
         m_made.push_back(std::make_unique<Level>(finer, base.type(), base.channels()));
     }
 }

@@ -11,13 +11,21 @@ inline constexpr int kMaxSide = 1 << 20;  ///< the largest width and height of a
 
 class SummedAreas;
 
+/// The texels of a coarser picture that have some of a box of a finer one; or those that have nothing else.
+Box texels_over(const Box& box, const Size& fine, const Size& coarse) noexcept;
+Box texels_within(const Box& box, const Size& fine, const Size& coarse) noexcept;
+
 /// One resolution of a source: the size of its picture, and the texels that there are.
 struct SourceLevel {
     Size size;
     /// The picture's texels, (0, 0) to (width - 1, height - 1), and those that stand for themselves beyond its edges.
     Box extent;
+    /// Those of them of which no part is missing: on a coarser level the outermost ones may be faded.
+    Box whole;
 
-    SourceLevel(const Size& picture, const Box& all) : size(picture), extent(all) {}
+    SourceLevel(const Size& picture, const Box& all, const Box& unfaded)
+        : size(picture), extent(all), whole(unfaded) {}
+    SourceLevel(const Size& picture, const Box& all) : SourceLevel(picture, all, all) {}
     /// A level of which nothing stands beyond the edges.
     SourceLevel(const Size& picture) : SourceLevel(picture, {0, 0, picture.width, picture.height}) {}
 };
@@ -39,8 +47,8 @@ class Source {
     /// (overscan: a data window larger than the display window) the smallest rectangle around both. Texels of it that the
     /// image lacks are 0.
     virtual Box extent(int level) const noexcept { return SourceLevel(size(level)).extent; }
-    /// A level's size and extent.
-    SourceLevel level(int level) const noexcept { return {size(level), extent(level)}; }
+    /// A level's size, and its texels.
+    SourceLevel level(int level) const noexcept;
 
     /// Copies the texels of `box`, which lies inside the level's extent, to `texels`: packed pixels of type(), rows
     /// `row_stride` bytes apart. False where they cannot be read; the source keeps the reason for its owner.
