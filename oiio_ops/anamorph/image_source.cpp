@@ -216,14 +216,16 @@ void check_windows(const ImageSpec& spec, const std::string& image) {
     if (spec.full_width > kMostSide || spec.full_height > kMostSide)
         throw Error(image + " has " + pixels(spec.full_width, spec.full_height) + ": must have " + "1x1 to " +
                     pixels(kMostSide, kMostSide));
-    const auto is_near = [](std::int64_t display, std::int64_t data, int size) {
-        return data - display >= -kMostSide && data + size - display <= kMostSide;
+    const auto is_near = [](std::int64_t display, std::int64_t shown, std::int64_t data, int size) {
+        return data >= display - kMaxSide && data + size <= display + shown + kMaxSide;
     };
-    if (!is_near(spec.full_x, spec.x, spec.width) || !is_near(spec.full_y, spec.y, spec.height))
+    if (!is_near(spec.full_x, spec.full_width, spec.x, spec.width) ||
+        !is_near(spec.full_y, spec.full_height, spec.y, spec.height))
         throw Error(image + " has a data window of " + pixels(spec.width, spec.height) + " at " +
                     std::to_string(spec.x) + "," + std::to_string(spec.y) + ": must lie within " +
-                    std::to_string(kMostSide) + " pixels of the display window's corner, " +
-                    std::to_string(spec.full_x) + "," + std::to_string(spec.full_y));
+                    std::to_string(kMaxSide) + " pixels of the display window, " +
+                    pixels(spec.full_width, spec.full_height) + " at " + std::to_string(spec.full_x) + "," +
+                    std::to_string(spec.full_y));
 }
 
 void check_source(const ImageSpec& spec, const std::string& name) {

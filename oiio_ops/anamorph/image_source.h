@@ -55,7 +55,7 @@ Frame frame_of(const OIIO::ImageSpec& spec);
 /// The channel by which a picture's colour is not yet multiplied, or -1.
 int unassociated_alpha_of(const OIIO::ImageSpec& spec);
 
-/// Throws Error unless both windows of an image have pixels and lie within 2^24 of each other. `image`: what messages call it.
+/// Throws Error unless both windows of an image have pixels and lie within kMaxSide of each other. `image`: what messages call it.
 void check_windows(const OIIO::ImageSpec& spec, const std::string& image);
 
 /// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels that are not square.

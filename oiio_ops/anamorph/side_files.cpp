@@ -23,7 +23,10 @@ class OiioImage final : public SideImage {
     OiioImage(const std::string& key, const std::string& name)
         : m_name(name), m_what("image \"" + printable(name) + "\"") {
         check_file_name(key, name);
-        m_input = OIIO::ImageInput::open(name);
+        // The numbers that are stored, whatever alpha is.
+        OIIO::ImageSpec config;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        m_input = OIIO::ImageInput::open(name, &config);
         if (!m_input) {
             const std::string why = reason_of(OIIO::geterror(), name, name);
             throw Error(m_what + ": " + (why.empty() ? "cannot be read" : why));

@@ -150,7 +150,7 @@ class RecipeContent final : public Content {
         std::vector<SourceImage> known;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
-            const int own = images.empty() ? part : part_of_other(file, opening, part);
+            const int own = images.empty() ? part : part_of_other(file, opening, part, parts);
             images.push_back(open_source(file, opening, own));
             specs.push_back(images.back().image->spec());
             known.push_back(source_image(upright(specs.back())));
@@ -253,12 +253,12 @@ class RecipeContent final : public Content {
     }
 
     /// The part of another source than the first: the same, or the only one.
-    static int part_of_other(const SideFile& file, Opening& opening, int part) {
-        const auto parts = static_cast<int>(opening.parts_of(file).size());
-        if (parts > 1 && part >= parts)
-            throw Error("source \"" + printable(file.name) + "\" has " + std::to_string(parts) +
-                        " parts: must have 1, or as many as the first");
-        return parts > 1 ? part : 0;
+    static int part_of_other(const SideFile& file, Opening& opening, int part, int parts) {
+        const auto own = static_cast<int>(opening.parts_of(file).size());
+        if (own != 1 && own != parts)
+            throw Error("source \"" + printable(file.name) + "\" has " + std::to_string(own) +
+                        " parts: must have 1, or as many as the first, " + std::to_string(parts));
+        return own > 1 ? part : 0;
     }
 
     OpenSource open_or_none(const SideFile& file, Opening& opening) {
@@ -323,12 +323,18 @@ class PartsContent final : public Content {
     PartsContent(const Recipe& recipe, int count) : m_recipe(recipe), m_count(count) {}
 
     int subimages() const override { return m_count; }
-    int levels(int subimage) const override { return part(subimage)->levels(0); }
+    int levels(int subimage) const override {
+        const std::shared_ptr<const RecipeContent> content = part_or_none(subimage);
+        return content ? content->levels(0) : 1;
+    }
+    /// A host that is told of no part takes those before it for all. So of one that cannot be drawn it is told what it
+    /// knows of the first, and why when it reads it.
     const ImageSpec& spec(int subimage, int level) const override {
         const std::lock_guard lock(m_mutex);
         const auto found = m_specs.find({subimage, level});
         if (found != m_specs.end()) return found->second;
-        return m_specs[{subimage, level}] = part(subimage)->spec(0, level);
+        const std::shared_ptr<const RecipeContent> content = part_or_none(subimage);
+        return m_specs[{subimage, level}] = content ? content->spec(0, level) : part(0)->spec(0, 0);
     }
     void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
         part(subimage)->read(0, level, box, pixels);
@@ -344,6 +350,14 @@ class PartsContent final : public Content {
 
   private:
     static constexpr std::size_t kKept = 4;
+
+    std::shared_ptr<const RecipeContent> part_or_none(int i) const {
+        try {
+            return part(i);
+        } catch (const Error&) {
+            return nullptr;
+        }
+    }
 
     Recipe m_recipe;
     int m_count;

@@ -126,11 +126,9 @@ TEST_F(Parts, OtherSourcesHaveAsManyOrOne) {
                 part_of("other.exr.morph?b=other.exr" + keys, 0));
     // The third lacks a partner.
     ASSERT_EQ(run("oiiotool beauty.exr beauty.exr beauty.exr --siappendall -o three.exr").status, 0);
-    const auto input = open("three.exr.morph?b=two.exr" + keys);
-    EXPECT_TRUE(input->seek_subimage(1, 0));
-    EXPECT_FALSE(input->seek_subimage(2, 0));
-    EXPECT_THAT(input->geterror(),
-                HasSubstr("source \"two.exr\" has 2 parts: must have 1, or as many as the first"));
+    for (const std::string first : {"three", "other"})
+        EXPECT_THAT(open_error(first + ".exr.morph?b=two.exr" + keys),
+                    HasSubstr("source \"two.exr\" has 2 parts: must have 1, or as many as the first"));
     // Of a film, the first.
     const std::string film = "three.exr.morph?b=other.exr&features=lines.json&frames=4";
     EXPECT_EQ(parts_in(film), 4);
@@ -165,6 +163,23 @@ TEST_F(Parts, ThatAreNotThereAreRefused) {
     EXPECT_FALSE(input->seek_subimage(3, 0));
     EXPECT_FALSE(input->seek_subimage(-1, 0));
     EXPECT_FALSE(input->seek_subimage(1, 1));
+}
+
+// A host must not take those before it for all.
+TEST_F(Parts, OneThatCannotBeDrawnIsAnErrorWhereItIsRead) {
+    write_panorama("a.tif", 40, 20, OIIO::TypeUInt8);
+    write_panorama("b.tif", 40, 40, OIIO::TypeUInt8);
+    ASSERT_EQ(run("oiiotool a.tif b.tif a.tif --siappendall -o pages.tif").status, 0);
+    const std::string recipe = "pages.tif.pano?to=rectilinear&fov=90&size=20x20";
+    EXPECT_EQ(parts_in(recipe), 3);
+    EXPECT_TRUE(part_of(recipe, 2) == part_of(recipe, 0));
+    const auto input = open(recipe);
+    std::vector<float> pixels(20 * 20 * 3);
+    EXPECT_FALSE(input->read_image(1, 0, 0, 3, OIIO::TypeFloat, pixels.data()));
+    EXPECT_THAT(input->geterror(), HasSubstr("from"));
+    const Ran ran = run("oiiotool -a '" + recipe + "' -o out.tif");
+    EXPECT_NE(ran.status, 0);
+    EXPECT_THAT(ran.text, HasSubstr("anamorph: "));
 }
 
 TEST_F(Parts, AreReadFromThreadsInAnyOrder) {

@@ -192,6 +192,10 @@ TEST_F(Warp, AnStMapHasWindows) {
                 HasSubstr("must be 192x128 of an ST-map of 100x60"));
     EXPECT_EQ(read_pixels("city.exr.warp?mesh=part.exr&size=192x128").bytes,
               read_pixels("city.exr.warp?mesh=part.exr").bytes);
+    // Coarser windows would not lie on pixels.
+    for (const char* recipe : {"city.exr.warp?mesh=more.exr&mip=1",
+                               "city.exr.lens?lens=3de4:k1=-0.15&size=all&mode=distort&mip=1"})
+        EXPECT_EQ(open(recipe)->spec(0, 1).format, OIIO::TypeUnknown);
 }
 
 TEST_F(Warp, VMayGoUp) {
@@ -242,6 +246,15 @@ TEST_F(Warp, PixelsOfAnStMapMayComeFromNowhere) {
                 }
             }
     }
+    // Alpha that is not multiplied in says no more than that.
+    ASSERT_EQ(
+        run("oiiotool city.exr.warp?mesh=grid.json\\&output=stmap -o down.exr down.exr --ch R,G,B=0.5,A=0.5 "
+            "--attrib oiio:UnassociatedAlpha 1 -d float -o half.tif")
+            .status,
+        0);
+    EXPECT_LT(largest_difference(read_floats("city.exr.warp?mesh=half.tif"),
+                                 read_floats("city.exr.warp?mesh=down.exr")),
+              1e-3);
     // Levels would have to know more.
     EXPECT_EQ(open("city.exr.warp?mesh=holes.exr&mip=1")->spec(0, 1).format, OIIO::TypeUnknown);
     EXPECT_THAT(open_error("city.exr.warp?mesh=holes.exr&size=96"), HasSubstr("in its own size, 192x128"));

@@ -11,9 +11,9 @@ inline constexpr int kMaxSide = 1 << 20;  ///< the largest width and height of a
 
 class SummedAreas;
 
-/// The texels of a coarser picture that have some of a box of a finer one; or those that have nothing else.
+/// The texels of a coarser picture that have some of a box of a finer one.
 Box texels_over(const Box& box, const Size& fine, const Size& coarse) noexcept;
-Box texels_within(const Box& box, const Size& fine, const Size& coarse) noexcept;
+Box texels_within(const Box& box, const Size& fine, const Size& coarse) noexcept;  ///< those within it
 
 /// One resolution of a source: the size of its picture, and the texels that there are.
 struct SourceLevel {
@@ -24,8 +24,8 @@ struct SourceLevel {
     Box whole;
 
     SourceLevel(const Size& picture, const Box& all, const Box& unfaded)
-        : size(picture), extent(all), whole(unfaded) {}
-    SourceLevel(const Size& picture, const Box& all) : SourceLevel(picture, all, all) {}
+        : size(picture), extent(all), whole(unfaded) {}  ///< some of whose texels may be faded
+    SourceLevel(const Size& picture, const Box& all) : SourceLevel(picture, all, all) {}  ///< all whole
     /// A level of which nothing stands beyond the edges.
     SourceLevel(const Size& picture) : SourceLevel(picture, {0, 0, picture.width, picture.height}) {}
 };

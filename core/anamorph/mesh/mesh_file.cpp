@@ -254,7 +254,7 @@ void check_finite(const float* at, int x, int y, std::string_view name) {
     if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
         throw Error(excerpt(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
                     std::to_string(at[0]) + "," + std::to_string(at[1]),
-                    "must be finite numbers; it is a hole where step is 1");
+                    "must be finite numbers, and alpha not 0; it is a hole where step is 1");
 }
 
 /// Makes holes of pixels that are not finite, and finds the largest magnitude of the others.
@@ -302,7 +302,8 @@ WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::strin
     if (!(samples.most < HUGE_VAL)) find_holes(samples);
     if (samples.holes == static_cast<std::int64_t>(numbers / 2))
         throw Error(excerpt(name) +
-                    " has no pixel that comes from anywhere: must have u and v that are finite");
+                    " has no pixel that comes from anywhere: must have u and v that are finite, and an alpha "
+                    "that is not 0");
     samples.v_up = v_up;
     if (v_up) samples.most += 1;
     mesh.samples = std::make_shared<StSamples>(std::move(samples));

@@ -29,10 +29,10 @@ class FlatPictures final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         const std::optional<Size> size = level_size(m_request.target, level);
-        if (!size) return {};
+        if (!size || (level > 0 && m_request.display)) return {};
         PictureRequest picture;
         picture.size = *size;
-        picture.display = level_display(m_request.display, level);
+        picture.display = m_request.display;
         picture.pixels = pixels_of(m_request.output);
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
         if (m_request.says)

@@ -17,7 +17,7 @@ ParameterTable make_lens_table() {
     using namespace rows;
     Parameter extent = size(
         "width and height of the picture, or its width alone, about the same middle and as fine as the "
-        "source; all: the source's, with a data window around it that holds all of the source; by default "
+        "source; all: the source's, with a data window that holds all that is left of the source; by default "
         "the "
         "source's");
     extent.choices = {kAll};

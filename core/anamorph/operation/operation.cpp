@@ -2,7 +2,6 @@
 #include "anamorph/operation/operation.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace anamorph {
 
@@ -75,13 +74,6 @@ void check_color_space(const SourceImage& image, const std::string& name, const 
 std::optional<Size> level_size(const Size& size, int level) {
     if (level > 0 && std::max(size.width, size.height) >> level < 1) return {};
     return Size{std::max(1, size.width >> level), std::max(1, size.height >> level)};
-}
-
-std::optional<Box> level_display(const std::optional<Box>& display, int level) {
-    if (!display) return {};
-    const auto at = [&](int edge) { return static_cast<int>(std::lround(std::ldexp(edge, -level))); };
-    const int x = at(display->x0), y = at(display->y0);
-    return Box{x, y, std::max(x + 1, at(display->x1)), std::max(y + 1, at(display->y1))};
 }
 
 }  // namespace anamorph

@@ -76,6 +76,7 @@ enum class PixelKind { color, point, vector, value };
 struct PictureRequest {
     Size size;
     /// The display window, in pixels of the picture, which is then the data window; where there is none they are the same.
+    /// Such a picture has one level: on coarser ones its windows would not lie on pixels.
     std::optional<Box> display = {};
     PixelKind pixels = PixelKind::color;
     std::vector<std::string> channels;  ///< names of the channels of colour that no source says: as float
@@ -175,7 +176,5 @@ void check_color_space(const SourceImage& image, const std::string& name, const 
 
 /// A size halved each way, `level` times, rounded down, at least 1; none past the level of one pixel.
 std::optional<Size> level_size(const Size& size, int level);
-/// The display window of a level, to the nearest pixel, of at least one.
-std::optional<Box> level_display(const std::optional<Box>& display, int level);
 
 }  // namespace anamorph

@@ -225,12 +225,12 @@ class Warps final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         const std::optional<Size> size = level_size(m_request.target, level);
-        if (!size || (level > 0 && has_holes())) return {};
+        if (!size || (level > 0 && (has_holes(*m_map) || m_request.display))) return {};
         WarpRequest request = m_request;
         request.target = *size;
         PictureRequest picture;
         picture.size = *size;
-        picture.display = level_display(m_request.display, level);
+        picture.display = m_request.display;
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         if (!request.machine) picture.says = {{"anamorph:tol", request.options.tol}};
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
@@ -241,16 +241,21 @@ class Warps final : public Pictures {
                          whole = m_request]() -> std::unique_ptr<const SolvedPicture> {
             const WarpMap& given = *map;
             const WarpMap here = level > 0 ? in_fractions(given, whole.source, whole.target) : given;
-            if (request.machine) return shaded_picture(here, request);
+            if (request.machine) {
+                if (has_holes(given))
+                    throw Error(
+                        "scheme", "hardware",
+                        "must be another for " + given.name + ", which has pixels that come from nowhere");
+                return shaded_picture(here, request);
+            }
             return solved(warped_picture(here, whole.source, request.target, request.options));
         };
         return picture;
     }
 
   private:
-    /// Between pixels that come from nowhere there is no coarser one.
-    bool has_holes() const {
-        const auto* mesh = std::get_if<ControlMesh>(&m_map->shape);
+    static bool has_holes(const WarpMap& map) {
+        const auto* mesh = std::get_if<ControlMesh>(&map.shape);
         return mesh && mesh->samples && mesh->samples->holes > 0;
     }
 
