@@ -142,7 +142,7 @@ std::vector<SideFile> sources_of(const Recipe& recipe) {
 /// The pictures of one part of a recipe's sources.
 class RecipeContent final : public Content {
   public:
-    /// `parts`: how many the first source has.
+    /// `parts`: how many the source has that has most.
     RecipeContent(const Recipe& recipe, Opening& opening, int part, int parts) {
         const ParameterValues& values = recipe.values;
         std::vector<OpenSource> images;
@@ -150,7 +150,7 @@ class RecipeContent final : public Content {
         std::vector<SourceImage> known;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
-            const int own = images.empty() ? part : part_of_other(file, opening, part, parts);
+            const int own = part_in(file, opening, part, parts);
             images.push_back(open_source(file, opening, own));
             specs.push_back(images.back().image->spec());
             known.push_back(source_image(upright(specs.back())));
@@ -252,12 +252,12 @@ class RecipeContent final : public Content {
                 content, part};
     }
 
-    /// The part of another source than the first: the same, or the only one.
-    static int part_of_other(const SideFile& file, Opening& opening, int part, int parts) {
+    /// The part of a source that goes with `part` of `parts`: the same, or the only one.
+    static int part_in(const SideFile& file, Opening& opening, int part, int parts) {
         const auto own = static_cast<int>(opening.parts_of(file).size());
         if (own != 1 && own != parts)
             throw Error("source \"" + printable(file.name) + "\" has " + std::to_string(own) +
-                        " parts: must have 1, or as many as the first, " + std::to_string(parts));
+                        " parts: must have 1, or as many as another has, " + std::to_string(parts));
         return own > 1 ? part : 0;
     }
 
@@ -382,9 +382,10 @@ int part_named(const std::string& asked, const std::vector<std::string>& parts) 
 
 /// What a recipe shows: the pictures of one part of its source, or of all.
 std::shared_ptr<const Content> content_of(const Recipe& recipe, Opening& opening) {
-    const std::vector<SideFile> sources = sources_of(recipe);
-    if (sources.empty()) return std::make_shared<const RecipeContent>(recipe, opening, 0, 1);
-    const std::vector<std::string> parts = opening.parts_of(sources[0]);
+    std::vector<std::string> parts(1);
+    for (const SideFile& file : sources_of(recipe))
+        if (std::vector<std::string> own = opening.parts_of(file); own.size() > parts.size())
+            parts = std::move(own);
     const auto count = static_cast<int>(parts.size());
     const bool is_asked = recipe.values.knows("subimage") && recipe.values.given("subimage");
     if (is_asked || count == 1)
