@@ -206,26 +206,35 @@ int unassociated_alpha_of(const ImageSpec& spec) {
     return spec.get_int_attribute("oiio:UnassociatedAlpha") ? spec.alpha_channel : -1;
 }
 
+namespace {
+
+std::string pixels_of(int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height) + " pixels";
+}
+
+void check_sides(int width, int height, const std::string& image) {
+    constexpr int kMostSide = 1 << 24;
+    if (width > kMostSide || height > kMostSide)
+        throw Error(image + " has " + pixels_of(width, height) + ": must have 1x1 to " +
+                    std::to_string(kMostSide) + "x" + std::to_string(kMostSide));
+}
+
+}  // namespace
+
 void check_windows(const ImageSpec& spec, const std::string& image) {
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1)
         throw Error(image + " has no pixels");
-    const auto pixels = [](int width, int height) {
-        return std::to_string(width) + "x" + std::to_string(height) + " pixels";
-    };
-    constexpr int kMostSide = 1 << 24;
-    if (spec.full_width > kMostSide || spec.full_height > kMostSide)
-        throw Error(image + " has " + pixels(spec.full_width, spec.full_height) + ": must have " + "1x1 to " +
-                    pixels(kMostSide, kMostSide));
+    check_sides(spec.full_width, spec.full_height, image);
     const auto is_near = [](std::int64_t display, std::int64_t shown, std::int64_t data, int size) {
         return data >= display - kMaxSide && data + size <= display + shown + kMaxSide;
     };
     if (!is_near(spec.full_x, spec.full_width, spec.x, spec.width) ||
         !is_near(spec.full_y, spec.full_height, spec.y, spec.height))
-        throw Error(image + " has a data window of " + pixels(spec.width, spec.height) + " at " +
+        throw Error(image + " has a data window of " + pixels_of(spec.width, spec.height) + " at " +
                     std::to_string(spec.x) + "," + std::to_string(spec.y) + ": must lie within " +
                     std::to_string(kMaxSide) + " pixels of the display window, " +
-                    pixels(spec.full_width, spec.full_height) + " at " + std::to_string(spec.full_x) + "," +
-                    std::to_string(spec.full_y));
+                    pixels_of(spec.full_width, spec.full_height) + " at " + std::to_string(spec.full_x) +
+                    "," + std::to_string(spec.full_y));
 }
 
 void check_source(const ImageSpec& spec, const std::string& name) {
@@ -235,11 +244,7 @@ void check_source(const ImageSpec& spec, const std::string& name) {
     if (spec.nchannels < 1) throw Error(image + " has no pixels");
     check_windows(spec, image);
     const Frame frame = frame_of(spec);
-    constexpr int kMostSide = 1 << 24;
-    if (frame.width > kMostSide || frame.height > kMostSide)
-        throw Error(image + " has " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +
-                    " pixels: must have 1x1 to " + std::to_string(kMostSide) + "x" +
-                    std::to_string(kMostSide));
+    check_sides(frame.width, frame.height, image);
     const float aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
     if (!(std::fabs(aspect - 1) <= 1e-4f))
         throw Error(image + " has PixelAspectRatio=" + shortest(aspect) +
@@ -284,7 +289,7 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std
     const auto file = open_as_cache_does(*m_cache, name);
     read_levels([&](int level) { return file ? file->spec(m_subimage, level) : ImageSpec(); },
                 [&] { return file ? file->geterror() : OIIO::geterror(); });
-    m_parts = names_of_parts(*file);
+    if (subimage == 0) m_parts = names_of_parts(*file);
 }
 
 void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not) {

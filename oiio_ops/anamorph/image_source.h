@@ -55,7 +55,8 @@ Frame frame_of(const OIIO::ImageSpec& spec);
 /// The channel by which a picture's colour is not yet multiplied, or -1.
 int unassociated_alpha_of(const OIIO::ImageSpec& spec);
 
-/// Throws Error unless both windows of an image have pixels and lie within kMaxSide of each other. `image`: what messages call it.
+/// Throws Error unless both windows of an image have pixels, and the data window lies within kMaxSide of the other.
+/// `image`: what messages call it.
 void check_windows(const OIIO::ImageSpec& spec, const std::string& image);
 
 /// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels that are not square.
@@ -85,7 +86,8 @@ class CacheSource final : public Source {
     const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
     /// The specs of all levels that serve, as the file has them.
     std::vector<OIIO::ImageSpec> specs() const;
-    /// The names of all subimages of the file, where it was asked itself; empty names of those that have none.
+    /// The names of all subimages of the file, where it was asked itself for the first; empty names of those that have
+    /// none.
     const std::vector<std::string>& parts() const { return m_parts; }
     /// The reason that the last failed read failed.
     std::string error() const;

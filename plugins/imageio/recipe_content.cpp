@@ -340,11 +340,11 @@ class PartsContent final : public Content {
         part(subimage)->read(0, level, box, pixels);
     }
 
-    /// The picture of one part, made by an opening that goes on or one of its own.
+    /// The picture of one part, made by an opening that goes on, or by one that all of them share.
     std::shared_ptr<const RecipeContent> part(int i, Opening* opening = nullptr) const {
         return m_parts.get(std::to_string(i), [&] {
-            Opening own;
-            return std::make_shared<const RecipeContent>(m_recipe, opening ? *opening : own, i, m_count);
+            const std::lock_guard lock(m_opening_later);
+            return std::make_shared<const RecipeContent>(m_recipe, opening ? *opening : m_later, i, m_count);
         });
     }
 
@@ -361,6 +361,8 @@ class PartsContent final : public Content {
 
     Recipe m_recipe;
     int m_count;
+    mutable std::mutex m_opening_later;
+    mutable Opening m_later;
     mutable Memo<const RecipeContent> m_parts{kKept};
     mutable std::mutex m_mutex;
     mutable std::map<std::pair<int, int>, ImageSpec> m_specs;  ///< by part and level
@@ -420,7 +422,7 @@ std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file, int part) 
                         });
     if (is_new) {
         header.levels[part] = source->specs();
-        header.parts = source->parts();
+        if (part == 0) header.parts = source->parts();
     }
     source->keep_rows();
     return source;

@@ -259,6 +259,8 @@ TEST_F(Warp, PixelsOfAnStMapMayComeFromNowhere) {
     EXPECT_EQ(open("city.exr.warp?mesh=holes.exr&mip=1")->spec(0, 1).format, OIIO::TypeUnknown);
     EXPECT_THAT(open_error("city.exr.warp?mesh=holes.exr&size=96"), HasSubstr("in its own size, 192x128"));
     EXPECT_THAT(open_error("city.exr.warp?mesh=holes.exr&step=3"), HasSubstr("must be finite numbers"));
+    EXPECT_THAT(open_error("city.exr.warp?mesh=holes.exr&scheme=hardware"),
+                HasSubstr("scheme=hardware: must be another for holes.exr"));
 }
 
 TEST_F(Warp, FilesStandWhereTheRecipeStands) {

@@ -44,7 +44,8 @@ class Border {
 
     /// A rectangle of texels of a level that lie within `piece` and stand for themselves: all of those, except in
     /// pictures with a round edge. Texels beyond the edges of a picture are among them unless it is divided into faces or
-    /// closes around the sphere, where the picture goes on by itself.
+    /// closes around the sphere, where the picture goes on by itself; on coarser levels and beside a border that is not
+    /// black only whole ones.
     Box interior(int piece, const SourceLevel& level) const noexcept;
 
     /// Finds the texel that stands at (x, y), which may lie any distance outside the piece's interior.

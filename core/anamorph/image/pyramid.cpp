@@ -22,13 +22,14 @@ struct Span {
 };
 
 /// Texel `i` of `coarse` covers [i r, (i + 1) r) of `fine`, r = fine / coarse; here in units of 1 / coarse.
-Span span_of(std::int64_t i, std::int64_t fine, std::int64_t coarse) {
-    const std::int64_t from = i * fine, to = from + fine;
-    Span span{static_cast<int>(from / coarse - (from % coarse < 0 ? 1 : 0)), 0, {}};
-    for (std::int64_t k = span.first; k * coarse < to; ++k) {
+Span span_of(int i, int fine, int coarse) {
+    const std::int64_t from = std::int64_t{i} * fine, to = from + fine;
+    const Box met = texels_over({i, 0, i + 1, 1}, {coarse, 1}, {fine, 1});
+    Span span{met.x0, 0, {}};
+    for (std::int64_t k = met.x0; k < met.x1; ++k) {
         const std::int64_t overlap = std::min((k + 1) * coarse, to) - std::max(k * coarse, from);
         span.weight[static_cast<std::size_t>(span.count++)] =
-            static_cast<float>(static_cast<double>(overlap) / static_cast<double>(fine));
+            static_cast<float>(static_cast<double>(overlap) / fine);
     }
     return span;
 }

@@ -18,14 +18,14 @@ int edge_above(std::int64_t edge, int from, int to) {
 
 }  // namespace
 
-Box texels_over(const Box& box, const Size& fine, const Size& coarse) noexcept {
-    return {edge_below(box.x0, fine.width, coarse.width), edge_below(box.y0, fine.height, coarse.height),
-            edge_above(box.x1, fine.width, coarse.width), edge_above(box.y1, fine.height, coarse.height)};
+Box texels_over(const Box& box, const Size& from, const Size& to) noexcept {
+    return {edge_below(box.x0, from.width, to.width), edge_below(box.y0, from.height, to.height),
+            edge_above(box.x1, from.width, to.width), edge_above(box.y1, from.height, to.height)};
 }
 
-Box texels_within(const Box& box, const Size& fine, const Size& coarse) noexcept {
-    return {edge_above(box.x0, fine.width, coarse.width), edge_above(box.y0, fine.height, coarse.height),
-            edge_below(box.x1, fine.width, coarse.width), edge_below(box.y1, fine.height, coarse.height)};
+Box texels_within(const Box& box, const Size& from, const Size& to) noexcept {
+    return {edge_above(box.x0, from.width, to.width), edge_above(box.y0, from.height, to.height),
+            edge_below(box.x1, from.width, to.width), edge_below(box.y1, from.height, to.height)};
 }
 
 SourceLevel Source::level(int level) const noexcept {

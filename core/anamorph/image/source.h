@@ -11,9 +11,10 @@ inline constexpr int kMaxSide = 1 << 20;  ///< the largest width and height of a
 
 class SummedAreas;
 
-/// The texels of a coarser picture that have some of a box of a finer one.
-Box texels_over(const Box& box, const Size& fine, const Size& coarse) noexcept;
-Box texels_within(const Box& box, const Size& fine, const Size& coarse) noexcept;  ///< those within it
+/// The texels of a picture of size `to` that have some of a box of the same picture of size `from`.
+Box texels_over(const Box& box, const Size& from, const Size& to) noexcept;
+Box texels_within(const Box& box, const Size& from,
+                  const Size& to) noexcept;  ///< those that have nothing else
 
 /// One resolution of a source: the size of its picture, and the texels that there are.
 struct SourceLevel {
@@ -55,8 +56,8 @@ class Source {
     virtual bool read(int level, const Box& box, std::byte* texels,
                       std::ptrdiff_t row_stride) const noexcept = 0;
 
-    /// The pixels of a level where they stand in memory as a whole and none stand beyond its edges, else null. Only boxes that prepare() was called for
-    /// are certain to hold their texels.
+    /// The pixels of a level where they stand in memory as a whole and none stand beyond its edges, else null. Only
+    /// boxes that prepare() was called for are certain to hold their texels.
     virtual const ConstImageView* view(int level) const noexcept {
         static_cast<void>(level);
         return nullptr;

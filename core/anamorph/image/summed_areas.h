@@ -27,10 +27,10 @@ class SummedAreas {
     /// Writes the mean over the rectangle of width x height texels about (x, y), in which texels are squares
     /// of one color, to `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample
     /// says. Sides below 1, or that are no number, are 1, so that the smallest rectangle interpolates
-    /// bilinearly. Beyond the edges as `wrap`, where automatic is black; where that is
-    /// asked for, texels beyond the edges of the source's picture stand for themselves. A texel that is no number makes no
-    /// number of its channel's means over it, and an infinite one infinite ones, unless less than kSameTexel
-    /// (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
+    /// bilinearly. Beyond the edges as `wrap`, where automatic is black; beside black, texels beyond the edges of
+    /// the source's picture stand for themselves, and other borders do without them. A texel that is no number
+    /// makes no number of its channel's means over it, and an infinite one infinite ones, unless less than
+    /// kSameTexel (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
     void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
 
     /// Writes the mean over a rectangle of a picture in latitudes and longitudes, all around: left and right

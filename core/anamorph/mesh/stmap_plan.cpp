@@ -101,6 +101,11 @@ void StMapPlan::exact_rows(const Block& block, int begin, int end, const DoubleR
 
 /// The rounding of a pixel's point in double, computed in either way: products and sums of its place and its
 /// sample's, 8 u of them at most.
+///
+/// In units of u (1 + |amount|) `place`, of a row: four operations for the pixel's place in the source, 4; the base off
+/// it, 2; two for the sample, 2. Their sum is an offset within the block, which the slack in plan() covers. Where v goes
+/// up, `most` is at least 1, and what has the source's size alone is at most half of `place`: 2 for the pixel's place,
+/// 1.5 for the base, .5 for the height and 1 for its sum, 2 for the sample.
 double StMapPlan::rounding() const {
     if (m_amount == 1 && !m_samples->v_up) return 0;
     const double place = std::max(m_source.width, m_source.height) * (1 + m_samples->most);
