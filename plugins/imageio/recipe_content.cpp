@@ -7,9 +7,11 @@
 #include <optional>
 #include <thread>
 
+#include "anamorph/chain/joined.h"
 #include "anamorph/image_source.h"
 #include "anamorph/metadata.h"
 #include "anamorph/operation/memo.h"
+#include "anamorph/operation/solved.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
 #include "anamorph/side_files.h"
@@ -42,7 +44,7 @@ ImageCacheRef shared_cache() {
 /// A picture and, once asked for, what it reached.
 class Solved {
   public:
-    explicit Solved(const PictureRequest& request) : m_picture(request.solve()) {}
+    explicit Solved(std::unique_ptr<const SolvedPicture> picture) : m_picture(std::move(picture)) {}
 
     const SolvedPicture& picture() const { return *m_picture; }
     const Attributes& reached() {
@@ -169,56 +171,69 @@ class RecipeContent final : public Content {
         m_pictures = recipe.operation->read({values, known, recipe.files, side_file_reader(), missing});
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
-        const PictureRequest first = *m_pictures->picture(0, 0);
-        const std::string space = filtering_space(values, first.pixels);
-        m_stored = moves_stored(first, specs, space);
-        if (m_stored) keep_stored(images[*first.moves]);
-        const SourceFaces faces = m_pictures->faces();
-        static auto& stacks = *new Memo<const SourceStacks>(2);
-        const std::string stack_key = identity + space + "\n" + std::to_string(faces.columns) + "x" +
-                                      std::to_string(faces.rows) +
-                                      (m_stored ? " stored " + std::to_string(*first.moves) : "");
-        m_stacks = stacks.get(stack_key, [&] {
-            std::vector<std::unique_ptr<Source>> sources;
-            for (OpenSource& open : images) sources.push_back(std::move(open.image));
-            return std::make_shared<const SourceStacks>(
-                make_source_stacks(std::move(sources), specs, faces, space));
-        });
-
         if (values.knows("mip") && values.toggle("mip"))
             while (m_pictures->picture(0, m_levels)) ++m_levels;
-        // What a film of many frames reached is not known without solving them all, nor what a picture did whose pixels
-        // have to be drawn for that.
+        const PictureRequest first = *m_pictures->picture(0, 0);
+        m_space = filtering_space(values, first.pixels);
+        m_stored = moves_stored(first, specs, m_space);
+        m_chain = recipe.operation->name;
+        join(recipe, images, first.pixels);
+        if (!m_joined) make_stacks(images, specs, identity);
+        // What is wrong with a picture is said when it is opened.
         for (int i = 0; subimages() == 1 && i < m_levels; ++i) {
             Level& l = level(0, i);
             l.solved = solve(l);
-            if (!l.solved->picture().reached_by_drawing()) add_attributes(l.spec, l.solved->reached());
         }
     }
 
     int subimages() const override { return m_pictures->frames(); }
     int levels(int) const override { return m_levels; }
+    const ImageSpec& header(int subimage, int level) const override {
+        return this->level(subimage, level).header;
+    }
     const ImageSpec& spec(int subimage, int level) const override {
-        return this->level(subimage, level).spec;
+        Level& l = this->level(subimage, level);
+        std::call_once(l.once, [&] {
+            l.spec = l.header;
+            // What a film of many frames reached is not known without solving them all, nor what a picture did whose
+            // pixels have to be drawn for that.
+            if (l.solved && !l.solved->picture().reached_by_drawing())
+                add_attributes(l.spec, l.solved->reached());
+        });
+        return l.spec;
     }
 
     void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
         const Level& l = this->level(subimage, level);
         const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
-        const StoredPixels as =
-            m_stored ? stored_pixels(l.spec) : StoredPixels{pixel_type(l.spec.format), l.spec.nchannels};
+        const StoredPixels as = m_stored ? stored_pixels(l.header)
+                                         : StoredPixels{pixel_type(l.header.format), l.header.nchannels};
         draw_picture(solved->picture(), *m_stacks, box,
                      packed_view(pixels, as.type, box.width(), box.height(), as.channels),
                      small ? serial_for : own_threads());
+    }
+
+    std::optional<JoinSource> join_source(int subimage) const override {
+        const Level& l = level(subimage, 0);
+        const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
+        return JoinSource{std::shared_ptr<const SolvedPicture>(solved, &solved->picture()),
+                          l.request.shown(),
+                          m_stacks,
+                          m_space,
+                          m_stored,
+                          l.key,
+                          m_chain};
     }
 
   private:
     struct Level {
         PictureRequest request;
         std::string key;  ///< the same text, the same picture
-        ImageSpec spec;
+        ImageSpec header;
         std::shared_ptr<Solved> solved;
+        std::once_flag once;
+        ImageSpec spec;  ///< the header with what was reached
     };
 
     struct OpenSource {
@@ -226,6 +241,57 @@ class RecipeContent final : public Content {
         std::shared_ptr<const Content> content;  ///< of a recipe
         int part = 0;
     };
+
+    /// Joins the picture with its source's, where that is a recipe and it can be done. Says what came of it.
+    void join(const Recipe& recipe, const std::vector<OpenSource>& images, PixelKind pixels) {
+        if (m_nested.empty()) return;
+        const std::string reason = why_not_joined(recipe.values, images, pixels);
+        if (!m_joined) {
+            m_said_of_chain = m_chain + " of a picture that is drawn first: " + reason;
+            return;
+        }
+        m_stacks = m_joined->stacks;
+        m_key += "joined with " + m_joined->key;
+        m_chain += " of " + m_joined->chain;
+        m_said_of_chain = m_chain;
+    }
+    /// Joins it, or returns the reason why not.
+    std::string why_not_joined(const ParameterValues& values, const std::vector<OpenSource>& images,
+                               PixelKind pixels) {
+        if (!values.knows("concatenate")) return m_chain + " does not join";
+        if (!values.toggle("concatenate")) return "concatenate=0";
+        if (!images[0].content) return "its source is no recipe";
+        if (subimages() > 1) return "it is a film";
+        std::optional<JoinSource> source = images[0].content->join_source(images[0].part);
+        if (!source || !source->picture->of_maps()) return "its source is no picture of maps";
+        if (pixels == PixelKind::color && (source->space != m_space || source->stored != m_stored))
+            return "colors are kept differently";
+        for (int i = 0; i < m_levels; ++i) {
+            const std::unique_ptr<const SolvedPicture> own = m_pictures->picture(0, i)->solve();
+            if (!own->of_maps()) return "it is no picture of maps";
+            const Joined joined = joined_picture(*own->of_maps(), *source->picture->of_maps(), source->shown);
+            if (!joined.picture) return joined.reason;
+        }
+        m_joined = std::move(source);
+        return "";
+    }
+
+    void make_stacks(std::vector<OpenSource>& images, const std::vector<ImageSpec>& specs,
+                     const std::string& identity) {
+        const PictureRequest first = *m_pictures->picture(0, 0);
+        if (m_stored) keep_stored(images[*first.moves]);
+        const SourceFaces faces = m_pictures->faces();
+        static auto& stacks = *new Memo<const SourceStacks>(2);
+        const std::string key = identity + m_space + "\n" + std::to_string(faces.columns) + "x" +
+                                std::to_string(faces.rows) +
+                                (m_stored ? " stored " + std::to_string(*first.moves) : "");
+        m_stacks = stacks.get(key, [&] {
+            std::vector<std::unique_ptr<Source>> sources;
+            for (OpenSource& open : images) sources.push_back(std::move(open.image));
+            return std::make_shared<const SourceStacks>(
+                make_source_stacks(std::move(sources), specs, faces, m_space));
+        });
+    }
 
     /// A cache would make float of what is stored otherwise; recipes are read by what they show.
     static void keep_stored(const OpenSource& open) {
@@ -247,7 +313,7 @@ class RecipeContent final : public Content {
         return {std::make_unique<CacheSource>(
                     shared_cache(), cached_name(file.name, file.identity), file.name, part,
                     [&](int level) {
-                        return level < content->levels(part) ? content->spec(part, level) : ImageSpec();
+                        return level < content->levels(part) ? content->header(part, level) : ImageSpec();
                     }),
                 content, part};
     }
@@ -283,9 +349,16 @@ class RecipeContent final : public Content {
                 spec.attribute(name, own->get_string());
     }
 
-    static std::shared_ptr<Solved> solve(const Level& level) {
+    std::shared_ptr<Solved> solve(const Level& level) const {
         static auto& memo = *new Memo<Solved>(16);
-        return memo.get(level.key, [&] { return std::make_shared<Solved>(level.request); });
+        return memo.get(level.key, [&] {
+            std::unique_ptr<const SolvedPicture> picture = level.request.solve();
+            if (m_joined)
+                picture = solved(
+                    *joined_picture(*picture->of_maps(), *m_joined->picture->of_maps(), m_joined->shown)
+                         .picture);
+            return std::make_shared<Solved>(std::move(picture));
+        });
     }
 
     Level& level(int subimage, int number) const {
@@ -295,19 +368,24 @@ class RecipeContent final : public Content {
             Level& made = found->second;
             made.request = *m_pictures->picture(subimage, number);
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
-            made.spec = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored);
-            if (!m_part.empty()) say_part(made.spec);
+            made.header = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored);
+            if (!m_part.empty()) say_part(made.header);
+            if (!m_said_of_chain.empty()) made.header.attribute("anamorph:chain", m_said_of_chain);
             const bool tiled = m_tile.width > 0 && m_tile.height > 0;
-            made.spec.tile_width = tiled ? m_tile.width : 0;
-            made.spec.tile_height = tiled ? m_tile.height : 0;
+            made.header.tile_width = tiled ? m_tile.width : 0;
+            made.header.tile_height = tiled ? m_tile.height : 0;
         }
         return found->second;
     }
 
     std::optional<ImageSpec> m_source;  ///< of the first source, upright
     std::unique_ptr<const Pictures> m_pictures;
-    std::string m_key;   ///< of the operation
-    std::string m_part;  ///< which of several parts is drawn, "0 of 3"
+    std::string m_key;            ///< of the operation
+    std::string m_part;           ///< which of several parts is drawn, "0 of 3"
+    std::string m_chain;          ///< the maps that the picture is drawn through, "pano of lens"
+    std::string m_said_of_chain;  ///< what the picture says of that where its source is a recipe
+    std::optional<JoinSource> m_joined;
+    std::string m_space;  ///< the color space that sources are filtered in
     std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
@@ -338,6 +416,9 @@ class PartsContent final : public Content {
     }
     void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
         part(subimage)->read(0, level, box, pixels);
+    }
+    std::optional<JoinSource> join_source(int subimage) const override {
+        return part(subimage)->join_source(0);
     }
 
     /// The picture of one part, made by an opening that goes on, or by one that all of them share.

@@ -178,8 +178,8 @@ class Costs {
             const Box block = middle_of(place.box);
             keep(over.rounding_over(block, half(block.width()), half(block.height()), place.local));
         });
-        add([this](const auto& over, Polynomials&, const auto& place) {
-            if constexpr (DirectMap<Map>) {
+        if constexpr (DirectMap<Map>)
+            add([this](const auto& over, Polynomials&, const auto& place) {
                 const Box block = middle_of(place.box);
                 Bases bases;
                 keep(m_map
@@ -187,8 +187,9 @@ class Costs {
                                                  half(block.width()), half(block.height()),
                                                  over.place_about(block).local, bases)
                          .error);
-            }
-        });
+            });
+        else
+            add([](const auto&, Polynomials&, const auto&) {});
         const BoxBounds<Map> over(m_map, m_options, 0);
         CostModel account({}, true, {});
         PolynomialStrategy<Map>(over, m_options.tol, account)

@@ -28,6 +28,8 @@ namespace anamorph {
 /// The inverse of a formula that pushes. Pixels, x right, y down, pixel centres at + 0.5.
 class PushedMap {
   public:
+    /// Roots are known about pixels (plan/map_link.h).
+    static constexpr bool kReadsComputedPoints = false;
     /// Source points cost most: a chord is the formula once, and takes some twelve of them.
     static constexpr PlanCosts kCosts{.bound = 60,
                                       .further_bound = 4,

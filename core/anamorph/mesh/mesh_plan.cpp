@@ -5,23 +5,17 @@
 #include <cstring>
 #include <limits>
 
+#include "anamorph/mesh/cell_map.h"
+#include "anamorph/mesh/cells.h"
 #include "anamorph/mesh/folds.h"
 #include "anamorph/mesh/hermite.h"
 #include "anamorph/mesh/mesh_lattice.h"
 #include "anamorph/mesh/mesh_residual.h"
 #include "anamorph/plan/block_writer.h"
+#include "anamorph/plan/map_link.h"
 
 namespace anamorph {
 namespace {
-
-/// The pixels whose centres lie in [from, to), as far as they lie in [first, last).
-void pixels_between(double from, double to, int first, int last, int& begin, int& end) {
-    const auto number = [&](double at) {
-        return static_cast<int>(std::clamp(std::ceil(at - 0.5), double(first), double(last)));
-    };
-    begin = number(from);
-    end = number(to);
-}
 
 /// One cell of the mesh, as it is planned.
 struct CellForm {
@@ -56,22 +50,6 @@ struct CellForm {
         return f;
     }
 };
-
-/// Calls body(cell, part) for the cells that meet a box of pixels, with the pixels whose centres they hold.
-template <class Body>
-void each_cell_of(const Mesh& mesh, const Box& box, const Body& body) {
-    mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell& cell) {
-        Box part;
-        // The outermost cells go on to the edges of the image.
-        pixels_between(cell.x0 <= mesh.x_lines().front() ? -1 : cell.x0,
-                       cell.x1 >= mesh.x_lines().back() ? HUGE_VAL : cell.x1, box.x0, box.x1, part.x0,
-                       part.x1);
-        pixels_between(cell.y0 <= mesh.y_lines().front() ? -1 : cell.y0,
-                       cell.y1 >= mesh.y_lines().back() ? HUGE_VAL : cell.y1, box.y0, box.y1, part.y0,
-                       part.y1);
-        if (!part.empty()) body(cell, part);
-    });
-}
 
 /// Have cells so few pixels in a box that blocks are better off without them?
 bool has_small_cells(const Mesh& mesh, const Box& box) {
@@ -118,19 +96,12 @@ class CellSubdivider {
 
   private:
     double exact_bound(const Box& box) const {
-        // A hair more: points on an edge may be evaluated in the neighbour.
-        constexpr double kMore = 1e-9;
-        const Bounds all{box.x0 + 0.5 - kMore, box.y0 + 0.5 - kMore, box.x1 - 0.5 + kMore,
-                         box.y1 - 0.5 + kMore};
+        const Bounds all = with_neighbors({box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5});
         if (m_lattice || (!m_mesh.has_levels() && has_small_cells(m_mesh, box))) {
             const double rough = exact_rounding(m_mesh, all);
             if (m_lattice || m_tol == 0 || rough <= m_tol) return rough;
         }
-        double bound = 0;
-        m_mesh.each_cell(all.x0, all.y0, all.x1, all.y1, [&](const MeshCell& cell) {
-            bound = std::max(bound, exact_rounding(m_mesh, cell, m_mesh.patch(cell)));
-        });
-        return bound;
+        return exact_rounding_by_cells(m_mesh, all);
     }
 
     void settle(const CellForm& form, const Box& box) {
@@ -233,6 +204,16 @@ Jacobian MeshPlan::jacobian(double x, double y, int) const noexcept {
     const Point<J> p =
         m_mesh.at(m_mesh.patch(m_mesh.cell_at(x, y)), J::variable(x, 1, 0), J::variable(y, 0, 1));
     return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+}
+
+std::shared_ptr<const MapLink> MeshPlan::link() const {
+    const bool is_free = m_scheme == WarpScheme::automatic || m_scheme == WarpScheme::exact;
+    if (!is_free || m_lattice || !CellMap::serves(m_mesh)) return nullptr;
+    PlanOptions options;
+    options.scheme = m_scheme == WarpScheme::exact ? Scheme::exact : Scheme::automatic;
+    options.tol = m_tol;
+    options.cull = false;
+    return std::make_shared<const LinkOf<CellMap>>(CellMap(std::make_shared<const Mesh>(m_mesh)), options);
 }
 
 float MeshPlan::folds(double x, double y) const noexcept {

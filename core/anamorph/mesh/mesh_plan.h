@@ -54,6 +54,8 @@ class MeshPlan final : public WarpPlan {
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
+    /// Null where its cells are small, or another scheme than automatic or exact is asked for.
+    std::shared_ptr<const MapLink> link() const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

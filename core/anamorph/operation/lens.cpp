@@ -37,6 +37,7 @@ ParameterTable make_lens_table() {
                      "what the image says of itself, for brown also by Exif's focal length")),
         extent,
         subimage(),
+        concatenate(),
         tile(),
         mip(),
         filter(),

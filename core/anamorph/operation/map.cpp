@@ -30,6 +30,7 @@ ParameterTable make_map_table() {
         size("width and height of the picture, or its width alone, in the source's shape; by default the "
              "source's"),
         subimage(),
+        concatenate(),
         tile(),
         mip(),
         filter(),

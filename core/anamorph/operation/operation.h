@@ -27,6 +27,8 @@
 
 namespace anamorph {
 
+struct Picture;
+
 /// The facts of a source that are known before a pixel is read.
 struct SourceFacts {
     int width = 0, height = 0;
@@ -62,6 +64,8 @@ class SolvedPicture {
     /// Does reached() compute every pixel, so that it takes as long as drawing all of them? Hosts that open a picture to
     /// read a part of it go without.
     virtual bool reached_by_drawing() const { return false; }
+    /// The picture, where it is one of maps (image/picture.h): it may be joined with another (chain/joined.h).
+    virtual const Picture* of_maps() const { return nullptr; }
     /// Fills `view` with the pixels of `box`; sources are read for colour only. The sources are followed by
     /// linked images, null where one is missing. False when a source could not be read.
     virtual bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,

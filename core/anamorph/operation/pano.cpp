@@ -90,6 +90,7 @@ ParameterTable make_pano_table() {
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
         subimage(),
+        concatenate(),
         tile(),
         mip(),
         filter(),

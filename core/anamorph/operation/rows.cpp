@@ -149,6 +149,13 @@ Parameter subimage() {
         "name; by default all of them, one after the other, and of a film the first");
 }
 
+Parameter concatenate() {
+    return toggle("concatenate", "1",
+                  "1: a source that is itself a recipe of one picture is not drawn first, but both maps are "
+                  "joined and their "
+                  "source is sampled once, where that can be done; 0: it is drawn, and sampled again");
+}
+
 Parameter tile() {
     return extent("tile", "256", 0, kMaxTile, "tile size that a host is told; 0 for scanlines");
 }

@@ -53,6 +53,7 @@ Parameter file(const char* name, const std::string& doc);
 
 Parameter size(const std::string& doc);
 Parameter subimage();
+Parameter concatenate();
 Parameter tile();
 Parameter mip();
 Parameter tol();

@@ -18,6 +18,7 @@ class Solved final : public SolvedPicture {
             for (Attribute& attribute : m_picture.says(parallel_for)) all.push_back(std::move(attribute));
         return all;
     }
+    const Picture* of_maps() const override { return &m_picture; }
     bool reached_by_drawing() const override { return m_picture.reached_by_drawing; }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {

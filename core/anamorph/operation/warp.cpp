@@ -36,6 +36,7 @@ ParameterTable make_warp_table() {
         size("width and height of the picture, or its width alone; by default the source's, of an ST-map "
              "that pulls its own"),
         subimage(),
+        concatenate(),
         tile(),
         mip(),
         filter(),

@@ -13,6 +13,7 @@ class InverseView {
   public:
     /// The costs of PushedMap, whose source points cost most here too.
     static constexpr PlanCosts kCosts = PushedMap::kCosts;
+    static constexpr bool kReadsComputedPoints = PushedMap::kReadsComputedPoints;
     /// The pixels of the globe, an equirectangular picture, in which directions are counted.
     static constexpr Size kGlobe{2048, 1024};
 

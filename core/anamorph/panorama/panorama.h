@@ -51,6 +51,8 @@ class Panorama {
     /// The piece of the source that a branch leads to.
     int source_piece(const Local& local) const { return local.source.piece; }
     int period() const { return m_source.closed() ? m_source.period() : 0; }
+    /// The number of pixels after which the rows of the target repeat, or 0.
+    int target_period() const { return m_target.closed() ? m_target.period() : 0; }
     SourceEdges source_edges() const;
     /// Whether the points of a box have source points on one branch.
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;

@@ -18,6 +18,8 @@
 
 namespace anamorph {
 
+class MapLink;
+
 /// The data that a map keeps of a region for its computed or bicubic blocks.
 struct RegionData {
     virtual ~RegionData() = default;
@@ -187,6 +189,9 @@ class BlockMap {
     /// Writes the source points of all pixels of computed blocks: those that the layers have in one place, each to
     /// rows of its own.
     virtual void computed(std::span<const Block> layers, const PointRows* to) const noexcept;
+
+    /// The map as a link of a chain of maps (chain/), planned with any other as one; null where it cannot be.
+    virtual std::shared_ptr<const MapLink> link() const { return nullptr; }
 
   protected:
     /// Cuts `box`, a region of `piece`, into blocks.

@@ -62,6 +62,8 @@ class FormulaPlan : public BlockMap {
     bool is_smooth_in_pixels() const noexcept override { return true; }
     BlockPolynomial bicubic(const Block& block) const noexcept override;
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+    /// Null where another scheme than automatic or exact is asked for.
+    std::shared_ptr<const MapLink> link() const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

@@ -8,6 +8,7 @@
 #include "anamorph/plan/direct_blocks.h"
 #include "anamorph/plan/exact_bounds.h"
 #include "anamorph/plan/formula_plan.h"
+#include "anamorph/plan/map_link.h"
 #include "anamorph/plan/subdivider.h"
 
 namespace anamorph {
@@ -75,6 +76,12 @@ Jacobian FormulaPlan<Map>::jacobian(double x, double y, int piece) const noexcep
     using J = Jet1<double>;
     const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
     return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+}
+
+template <class Map>
+std::shared_ptr<const MapLink> FormulaPlan<Map>::link() const {
+    const bool is_free = m_options.scheme == Scheme::automatic || m_options.scheme == Scheme::exact;
+    return is_free ? std::make_shared<const LinkOf<Map>>(m_map, m_options) : nullptr;
 }
 
 template <class Map>

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/chain/chain_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anamorph {
+namespace {
+
+double middle_of(const Interval& a) {
+    return 0.5 * (a.lo + a.hi);
+}
+
+bool is_point(const Interval& a) {
+    return a.lo == a.hi;
+}
+
+/// An interval with `by` more at both ends.
+Interval widened(const Interval& a, double by) {
+    return a + Interval(-by, by);
+}
+
+bool is_within(const Interval& a, int from, int to) {
+    return a.lo >= from && a.hi <= to;
+}
+
+/// The part of an interval that lies in another.
+Interval part_of(const Interval& a, double lo, double hi) {
+    return {std::max(a.lo, lo), std::min(a.hi, hi)};
+}
+
+}  // namespace
+
+ChainMap::ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const MapLink> inner,
+                   const Point<double>& origin)
+    : m_outer(std::move(outer)),
+      m_inner(std::move(inner)),
+      m_origin(origin),
+      m_pieces(m_inner->target_pieces()) {}
+
+Point<double> ChainMap::shift_about(double x) const {
+    const int period = m_outer->source_period();
+    if (period == 0) return m_origin;
+    return {-std::floor(x / period) * period, 0};
+}
+
+int ChainMap::piece_at(double x, double y) const {
+    return piece_of({Interval(x), Interval(y)});
+}
+
+int ChainMap::piece_of(const Point<Interval>& box) const {
+    for (std::size_t i = 0; i < m_pieces.size(); ++i)
+        if (is_within(box.x, m_pieces[i].x0, m_pieces[i].x1) &&
+            is_within(box.y, m_pieces[i].y0, m_pieces[i].y1))
+            return static_cast<int>(i);
+    return -1;
+}
+
+bool ChainMap::misses(const Point<Interval>& box) const {
+    return std::all_of(m_pieces.begin(), m_pieces.end(), [&](const Box& piece) {
+        return box.x.hi < piece.x0 || box.x.lo > piece.x1 || box.y.hi < piece.y0 || box.y.lo > piece.y1;
+    });
+}
+
+ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
+    Local local{m_outer->place_around(x, y, piece), {}, -1, {0, 0}};
+    Point<double> at;
+    int outer_piece = 0;
+    if (!m_outer->exact(x, y, piece, at, outer_piece)) return local;
+    // By the branch, which may be another turn than the exact point.
+    at = m_outer->read(Point<double>{x, y}, local.outer);
+    local.shift = shift_about(at.x);
+    at = in_middle(at, local.shift);
+    local.piece = piece_at(at.x, at.y);
+    if (local.piece >= 0) local.inner = m_inner->place_around(at.x, at.y, local.piece);
+    return local;
+}
+
+Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Local& local,
+                      bool across_seam) const {
+    const Cover outer = m_outer->cover(x, y, piece, local.outer, /*across_seam=*/true);
+    if (outer != Cover::inside) return outer == Cover::outside ? Cover::outside : Cover::mixed;
+    const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
+    if (m_outer->source_period() == 0 && misses(at)) return Cover::outside;
+    if (!local.inner || piece_of(at) != local.piece) return Cover::mixed;
+    const Cover inner = m_inner->cover(at.x, at.y, local.piece, local.inner, across_seam);
+    return inner == Cover::partial ? Cover::mixed : inner;
+}
+
+double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, double off,
+                             bool in_long_double) const {
+    const double error = m_outer->exact_error(x, y, piece, off, in_long_double);
+    if (!(error < HUGE_VAL)) return HUGE_VAL;
+    const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
+    const Cover cover = m_outer->cover(x, y, piece, place, /*across_seam=*/true);
+    if (cover == Cover::outside) return 0;
+    // A box that holds the outer points, the true ones and the computed ones.
+    Point<Interval> points;
+    if (cover == Cover::inside) {
+        points = m_outer->read(Point<Interval>{x, y}, place);
+    } else {
+        if (!is_point(x) || !is_point(y)) return HUGE_VAL;
+        Point<double> at;
+        int outer_piece = 0;
+        // Whether there is one is certain, as the error is not infinite.
+        if (!m_outer->exact(x.lo, y.lo, piece, at, outer_piece)) return 0;
+        points = {Interval(at.x), Interval(at.y)};
+    }
+    points = {widened(points.x, error), widened(points.y, error)};
+
+    const int period = m_outer->source_period();
+    if (period == 0) return error_from(in_middle(points, m_origin), error, in_long_double);
+    points = in_middle(points, shift_about(middle_of(points.x)));
+    points.y = part_of(points.y, 0, m_inner->target_size().height);
+    if (is_within(points.x, 0, period)) return error_from(points, error, in_long_double);
+    // Across the seam the computed point may lie at one end and the true one at the other: no matter where the inner map
+    // goes on there.
+    if (m_inner->target_period() != period || !(points.x.hi - points.x.lo < period)) return HUGE_VAL;
+    const double turn = points.x.lo < 0 ? period : -period;
+    const auto error_of_part = [&](double shift) {
+        return error_from({part_of(points.x + Interval(shift), 0, period), points.y}, error, in_long_double);
+    };
+    return std::max(error_of_part(0), error_of_part(turn));
+}
+
+double ChainMap::error_from(const Point<Interval>& box, double off, bool in_long_double) const {
+    if (misses(box)) return 0;
+    if (const int piece = piece_of(box); piece >= 0)
+        return m_inner->exact_error(box.x, box.y, piece, off, in_long_double);
+    if (m_pieces.size() > 1) return HUGE_VAL;
+    // Points beyond the edges do not count, but for those that being off may bring there.
+    const Box& all = m_pieces[0];
+    return m_inner->exact_error(part_of(box.x, all.x0 - off, all.x1 + off),
+                                part_of(box.y, all.y0 - off, all.y1 + off), 0, off, in_long_double);
+}
+
+}  // namespace anamorph

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pull map of a picture of a picture: the outer one leads from the target to a picture that need not be drawn, the inner
+// one from there to the source. Pixels, x right, y down, pixel centres at + 0.5.
+//
+// It is one formula, that of the inner map at what the outer one gives, so that derivatives (the chain rule), bounds over boxes
+// and rounding come from reading it with other numbers, as those of any other map. Where the picture in the middle has edges
+// or holes the chain has no source point; the edges are where computed points cross them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "anamorph/plan/map_link.h"
+
+namespace anamorph {
+
+class ChainMap {
+  public:
+    /// Exact pixels cost most: they go from map to map one by one, where single maps have them in vectors.
+    static constexpr PlanCosts kCosts{.bound = 20,
+                                      .further_bound = 4,
+                                      .credit = 0.25,
+                                      .bound_pixels = 64,
+                                      .polynomial = 3,
+                                      .rounding = 6,
+                                      .double_pixel = 0.02};
+
+    /// The source of `outer` is what `inner` draws, and `origin` where the outer one's coordinates begin in that: at the display
+    /// window, where it is another than the data window. A source that closes on itself is as wide as what is drawn.
+    ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const MapLink> inner,
+             const Point<double>& origin);
+
+    // The members that make this a FormulaMap (plan/formula_map.h).
+
+    /// Where both maps are read, and how far the picture in the middle is turned there. There is no inner place where the
+    /// outer point lies beyond that picture.
+    struct Local {
+        LinkPlace outer, inner;
+        int piece = -1;  ///< of the picture in the middle
+        Point<double> shift{0, 0};
+    };
+    Size target_size() const { return m_outer->target_size(); }
+    Size source_size() const { return m_inner->source_size(); }
+    std::vector<Box> target_pieces() const { return m_outer->target_pieces(); }
+    SourceEdges source_edges() const { return m_inner->source_edges(); }
+    int source_piece(const Local& local) const {
+        return local.inner ? m_inner->source_piece(local.inner) : 0;
+    }
+    int period() const { return m_inner->source_period(); }
+    int target_period() const { return m_outer->target_period(); }
+    Local local_around(double x, double y, int piece) const;
+    Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
+
+    template <class T>
+    Point<T> operator()(const T& x, const T& y, const Local& local) const {
+        if (!local.inner) return {T(NAN), T(NAN)};
+        return m_inner->read(in_middle(m_outer->read(Point<T>{x, y}, local.outer), local.shift), local.inner);
+    }
+    template <std::floating_point Real>
+    bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {
+        Point<Real> at;
+        if (!m_outer->exact(x, y, piece, at, source_piece)) return false;
+        at = taken_back(at);
+        const int middle = piece_at(static_cast<double>(at.x), static_cast<double>(at.y));
+        return middle >= 0 && m_inner->exact(at.x, at.y, middle, p, source_piece);
+    }
+    /// `off`: how far the points of the box may be off themselves (MapLink::exact_error).
+    template <class Real>
+    double exact_error(const Interval& x, const Interval& y, int piece, double off = 0) const {
+        return exact_error(x, y, piece, off, std::is_same_v<Real, long double>);
+    }
+
+  private:
+    /// A point of the picture in the middle, from the outer map's.
+    template <class T>
+    static Point<T> in_middle(const Point<T>& p, const Point<double>& shift) {
+        if (shift.x == 0 && shift.y == 0) return p;
+        return {p.x + T(shift.x), p.y + T(shift.y)};
+    }
+    /// A point that the outer map computed in the picture in the middle: where that closes on itself, within it, whatever the
+    /// turn and the rounding at the poles.
+    template <class Real>
+    Point<Real> taken_back(const Point<Real>& p) const {
+        const Size size = m_inner->target_size();
+        if (const int period = m_outer->source_period(); period > 0)
+            return {p.x - std::floor(p.x / period) * period, std::clamp<Real>(p.y, 0, size.height)};
+        return {p.x + m_origin.x, p.y + m_origin.y};
+    }
+    /// The shift into the picture in the middle of the outer map's points near x.
+    Point<double> shift_about(double x) const;
+    /// The piece of the picture in the middle that holds a point, or a box; -1 where there is none.
+    int piece_at(double x, double y) const;
+    int piece_of(const Point<Interval>& box) const;
+    /// Is all of a box outside of the picture in the middle?
+    bool misses(const Point<Interval>& box) const;
+
+    double exact_error(const Interval& x, const Interval& y, int piece, double off,
+                       bool in_long_double) const;
+    /// Bounds the error of source points from a box in the middle, whose points are off by `off` at most.
+    double error_from(const Point<Interval>& box, double off, bool in_long_double) const;
+
+    std::shared_ptr<const MapLink> m_outer, m_inner;
+    Point<double> m_origin;
+    std::vector<Box> m_pieces;  ///< of the picture in the middle
+};
+
+}  // namespace anamorph

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/mesh/cell_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anamorph/mesh/cells.h"
+#include "anamorph/plan/block_writer.h"
+
+namespace anamorph {
+namespace {
+
+// The sum of all coefficients of a bicubic that is at most 1.
+constexpr double kMarkov = 100;
+
+}  // namespace
+
+CellMap::CellMap(std::shared_ptr<const Mesh> mesh) : m_mesh(std::move(mesh)) {
+    const Box whole{0, 0, m_mesh->from().width, m_mesh->from().height};
+    each_cell_of(*m_mesh, whole, [&](const MeshCell&, const Box& part) { m_pieces.push_back(part); });
+}
+
+bool CellMap::serves(const Mesh& mesh) {
+    const Size size = mesh.from();
+    const double pixels = double(size.width) * size.height;
+    double cells = 0;
+    mesh.each_cell(0, 0, size.width, size.height, [&](const MeshCell&) { ++cells; });
+    return cells * kLeastPixels <= pixels || (pixels <= kSmallPicture && cells <= kMostInSmall);
+}
+
+CellMap::Local CellMap::local_around(double x, double y, int) const {
+    const MeshCell cell = m_mesh->cell_at(x, y);
+    const Patch patch = m_mesh->patch(cell);
+    const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
+    Bicubic powers = restricted(power_form(patch), {(x - cell.x0) / w, 1 / w}, {(y - cell.y0) / h, 1 / h});
+    add_identity(powers, *m_mesh, {x, 1}, {y, 1});
+    return {cell, {x, y}, powers, double_rounding(*m_mesh, cell, patch)};
+}
+
+Cover CellMap::cover(const Interval& x, const Interval& y, int, const Local& local, bool) const {
+    // The outermost cells go on beyond the edges of the image.
+    const auto holds = [](const std::vector<double>& lines, double from, double to, const Interval& a) {
+        return (a.lo >= from || from <= lines.front()) && (a.hi <= to || to >= lines.back());
+    };
+    const MeshCell& cell = local.cell;
+    if (!holds(m_mesh->x_lines(), cell.x0, cell.x1, x) || !holds(m_mesh->y_lines(), cell.y0, cell.y1, y))
+        return Cover::mixed;
+    const Point<Interval> p = (*this)(x, y, local);
+    return is_near({magnitude(p.x), magnitude(p.y)}) ? Cover::inside : Cover::mixed;
+}
+
+Point<Interval> CellMap::operator()(const Interval& x, const Interval& y, const Local& local) const {
+    const Point<Interval> p = polynomial(x, y, local);
+    const Interval error(-local.error, local.error);
+    return {p.x + error, p.y + error};
+}
+
+Point<Rounded<double>> CellMap::operator()(const Rounded<double>& x, const Rounded<double>& y,
+                                           const Local& local) const {
+    Point<Rounded<double>> p = polynomial(x, y, local);
+    p.x.error += kMarkov * local.error;
+    p.y.error += kMarkov * local.error;
+    return p;
+}
+
+bool CellMap::is_near(const Point<double>& p) {
+    return std::fabs(p.x) < kFarthest && std::fabs(p.y) < kFarthest;
+}
+
+double CellMap::exact_error(const Interval& x, const Interval& y) const {
+    return exact_rounding_by_cells(*m_mesh, with_neighbors({x.lo, y.lo, x.hi, y.hi}));
+}
+
+}  // namespace anamorph

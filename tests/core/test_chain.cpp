@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of pictures drawn by one resampling: every pixel against the maps written out in long double, one after the
+// other, and what is lost of a picture that is drawn several times and once.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "anamorph/chain/joined.h"
+#include "anamorph/formula/text_plan.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/lens/lens_plan.h"
+#include "anamorph/mesh/mesh_warp.h"
+#include "anamorph/panorama/reproject.h"
+#include "block_points.h"
+#include "mesh_cases.h"
+#include "panorama_oracle.h"
+#include "warp_oracles.h"
+
+namespace anamorph {
+namespace {
+
+using oracle::View;
+using Real = long double;
+using Truth = std::function<Point<Real>(const Point<Real>&)>;
+
+constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
+
+/// One picture of a chain, and its map as the oracles have it; no number where there is no source point.
+struct Link {
+    Picture picture;
+    Truth truth;
+    bool closes = false;  ///< does its source close on itself?
+
+    Size size() const { return {picture.width(), picture.height()}; }
+};
+
+/// What is shared by the links of a chain.
+struct Settings {
+    double tol = 0.01;
+    Scheme scheme = Scheme::automatic;
+    Filter filter = Filter::antialias;
+};
+
+PlanOptions plan_of(const Settings& settings) {
+    PlanOptions options;
+    options.tol = settings.tol;
+    options.scheme = settings.scheme;
+    return options;
+}
+
+Border flat_border(const Size& source) {
+    return Border(Chart(Projection::rectilinear, source.width, source.height), Wrap::automatic);
+}
+
+Link lens_link(const std::string& lens, LensMode mode, const Size& size, const Size& target,
+               const Settings& settings) {
+    const View view = oracle::view_through(lens, size, 80);
+    const Chart chart = oracle::chart_of(view);
+    const std::vector<double> values = chart.lens()->model().values;
+    const Point<Real> centre{values[values.size() - 2], values.back()};
+    const auto plan =
+        std::make_shared<const LensPlan>(LensMap(chart, mode, target, target, size), plan_of(settings));
+    const auto truth = [view, mode, size, target, centre](const Point<Real>& p) -> Point<Real> {
+        const Real dx = Real(size.width - target.width) / 2, dy = Real(size.height - target.height) / 2;
+        const oracle::LensOracle& of = oracle::lens_of(view);
+        if (mode == LensMode::undistort) return of.observed(view, {p.x + dx - centre.x, p.y + dy - centre.y});
+        const Point<Real> q = of.ideal(view, {p.x + dx, p.y + dy});
+        return {q.x + centre.x, q.y + centre.y};
+    };
+    return {picture_through(plan, flat_border(size), settings.filter, Output::color), truth};
+}
+
+Link pano_link(const View& source, const View& target, const Orientation& look, const Settings& settings) {
+    ReprojectOptions options;
+    options.tol = settings.tol;
+    options.scheme = settings.scheme;
+    options.filter = settings.filter;
+    const Chart chart = oracle::chart_of(source);
+    const auto truth = [source, target, look](const Point<Real>& p) -> Point<Real> {
+        oracle::Vector ray{};
+        if (!oracle::ray_of(target, oracle::chart_of(target).pieces()[0], p.x, p.y, ray))
+            return {kNone, kNone};
+        return oracle::point_of(source, oracle::chart_of(source).pieces()[0], oracle::rotated(ray, look));
+    };
+    return {reprojected_picture(Panorama(chart, oracle::chart_of(target), look), options), truth,
+            chart.closed()};
+}
+
+Link mesh_link(unsigned seed, int cells, int levels, const Size& source, const Size& target,
+               const Settings& settings) {
+    test::Random random(seed);
+    const ControlMesh mesh = test::random_mesh(random, target, source, cells, cells, 0.3, levels == 0, 0);
+    MeshWarpOptions options;
+    options.tol = settings.tol;
+    options.scheme = settings.scheme == Scheme::exact ? WarpScheme::exact : WarpScheme::automatic;
+    options.filter = settings.filter;
+    const auto truth = [oracle = std::make_shared<test::MeshOracle>(mesh, target, source, 1)](
+                           const Point<Real>& p) { return (*oracle)(p.x, p.y); };
+    return {warped_picture(WarpMap{"mesh", mesh}, source, target, options), truth};
+}
+
+/// A twirl about the middle, as text.
+Link twirl_link(const Size& size, const Settings& settings) {
+    FormulaText text;
+    text.let = "w=0.8*exp(-2*r^2)";
+    text.u = "width/2+height/2*r*cos(a+w)";
+    text.v = "height/2-height/2*r*sin(a+w)";
+    const PlaneFormula formula = parse_formula(text, {size, size});
+    const auto plan = std::make_shared<const TextPlan>(TextMap(formula, size, size, size), plan_of(settings));
+    const auto truth = [size](const Point<Real>& p) -> Point<Real> {
+        const Real half = Real(size.height) / 2, x = (p.x - Real(size.width) / 2) / half,
+                   y = (p.y - half) / half, w = Real(0.8L) * std::exp(-2 * (x * x + y * y)), c = std::cos(w),
+                   s = std::sin(w);
+        // Turned by w against the clock, y down.
+        return {Real(size.width) / 2 + half * (x * c + y * s), half + half * (y * c - x * s)};
+    };
+    return {picture_through(plan, flat_border(size), settings.filter, Output::color), truth};
+}
+
+/// The chain of links, from the outermost to the innermost.
+Joined joined_of(const std::vector<Link>& links, const Point<int>& origin = {0, 0}) {
+    Joined all{links.back().picture, ""};
+    for (std::size_t i = links.size() - 1; i-- > 0;) {
+        const Size size{all.picture->width(), all.picture->height()};
+        all = joined_picture(links[i].picture, *all.picture,
+                             {origin.x, origin.y, size.width - origin.x, size.height - origin.y});
+        if (!all.picture) return all;
+    }
+    return all;
+}
+
+/// How near the edges of a picture in the middle points may be in or out.
+constexpr Real kEdge = 1e-6L;
+
+struct TruePoint {
+    Point<Real> at{kNone, kNone};
+    bool is_open = false;  ///< does rounding decide whether there is one?
+};
+
+TruePoint true_point(const std::vector<Link>& links, Point<Real> p, const Point<int>& origin) {
+    TruePoint found;
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        p = links[i].truth(p);
+        if (!std::isfinite(p.x) || !std::isfinite(p.y)) return {{kNone, kNone}, found.is_open};
+        if (i + 1 == links.size()) break;
+        const Size size = links[i + 1].size();
+        p = {p.x + origin.x, p.y + origin.y};
+        if (links[i].closes) {
+            p.x -= std::floor(p.x / size.width) * size.width;
+            continue;
+        }
+        const Real out = std::max({-p.x, p.x - size.width, -p.y, p.y - size.height});
+        found.is_open |= std::fabs(out) < kEdge;
+        if (out > 0) return {{kNone, kNone}, found.is_open};
+    }
+    found.at = p;
+    return found;
+}
+
+struct Findings {
+    std::int64_t over = 0, lost = 0, invented = 0, pixels = 0, exact = 0, drawn = 0;
+    double bound = 0;
+};
+
+Findings examine(const BlockMap& map, const std::vector<Link>& links, const Point<int>& origin = {0, 0}) {
+    Findings found;
+    const Border& border = links.back().picture.maps[0].layers[0].border;
+    const double turn = border.chart().closed() ? border.chart().period() : 0;
+    const double width = border.chart().width(), height = border.chart().height();
+    for (std::int64_t region = 0; region < map.regions(); ++region)
+        for (const Block& block : map.blocks(region)) {
+            found.bound = std::max(found.bound, block.bound);
+            for (int j = block.box.y0; j < block.box.y1; ++j) {
+                const test::BlockRow row(map, block, j);
+                for (int i = block.box.x0; i < block.box.x1; ++i) {
+                    ++found.pixels;
+                    found.exact += block.kind == Block::Kind::exact;
+                    const TruePoint truth = true_point(links, {i + 0.5L, j + 0.5L}, origin);
+                    Point<double> p{};
+                    int piece = 0;
+                    bool seen = test::has_points(block);
+                    if (seen)
+                        p = row.at(i);
+                    else if (block.kind == Block::Kind::exact)
+                        seen = map.exact(block, i + 0.5, j + 0.5, p, piece);
+                    const Point<Real>& at = truth.at;
+                    const bool exists = std::isfinite(at.x) && std::isfinite(at.y);
+                    constexpr double kFilter = 4;
+                    const bool in_source = exists &&
+                                           (turn > 0 || (at.x > -kFilter && at.x < width + kFilter)) &&
+                                           at.y > -kFilter && at.y < height + kFilter;
+                    found.drawn += seen;
+                    if (!seen) found.lost += in_source && !truth.is_open;
+                    if (!seen || !exists) {
+                        found.invented += seen && !truth.is_open;
+                        continue;
+                    }
+                    Real dx = p.x - at.x;
+                    if (turn > 0) dx -= std::round(dx / turn) * turn;
+                    found.over += std::hypot(dx, p.y - at.y) > block.bound;
+                }
+            }
+        }
+    return found;
+}
+
+struct ChainCase {
+    std::string name;
+    std::function<std::vector<Link>(const Settings&)> links;
+    double most_exact = 0.5;
+    /// The largest bound where nothing is exact enough (poles).
+    double exact_bound = 1e-6;
+};
+
+View view(Projection projection, const Size& size, double fov) {
+    return {projection, size.width, size.height, fov};
+}
+View flat(const Size& size, double fov) {
+    return view(Projection::rectilinear, size, fov);
+}
+
+std::vector<ChainCase> chain_cases() {
+    const Size plate{310, 206};
+    const View sphere = view(Projection::equirectangular, {640, 320}, 360);
+    return {
+        {"pano of lens",
+         [=](const Settings& s) {
+             return std::vector{
+                 pano_link(flat(plate, 80), flat({280, 240}, 70), {12, 7, 20}, s),
+                 lens_link("brown:k1=-0.2,k2=0.05,k3=-0.004", LensMode::undistort, plate, plate, s)};
+         }},
+        {"warp of pano of lens",
+         [=](const Settings& s) {
+             return std::vector{mesh_link(7, 4, 0, {280, 240}, {300, 250}, s),
+                                pano_link(flat(plate, 80), flat({280, 240}, 70), {12, 7, 20}, s),
+                                lens_link("3de4:k1=0.1,k2=0.03", LensMode::distort, plate, plate, s)};
+         }},
+        {"lens of warp",
+         [=](const Settings& s) {
+             return std::vector{
+                 lens_link("ptlens:a=0.01,b=-0.03,c=0.02", LensMode::undistort, {300, 250}, {320, 260}, s),
+                 mesh_link(8, 3, 1, plate, {300, 250}, s)};
+         }},
+        {"pano of pano, across the seam",
+         [=](const Settings& s) {
+             return std::vector{
+                 pano_link(sphere, flat({260, 200}, 100), {175, 20, 5}, s),
+                 pano_link(view(Projection::equirectangular, {800, 400}, 360), sphere, {30, 40, 10}, s)};
+         }},
+        {"pano of pano, at a pole",
+         [=](const Settings& s) {
+             return std::vector{
+                 pano_link(sphere, flat({200, 200}, 90), {3, 88, 0}, s),
+                 pano_link(view(Projection::fisheye, {400, 400}, 190), sphere, {0, 70, 10}, s)};
+         },
+         0.6},
+        {"twirl of lens that ends",
+         [=](const Settings& s) {
+             return std::vector{twirl_link(plate, s),
+                                lens_link("ptlens:b=-0.45", LensMode::undistort, plate, plate, s)};
+         }},
+        {"sphere of twirled plane",
+         [=](const Settings& s) {
+             return std::vector{pano_link(flat({300, 300}, 100),
+                                          view(Projection::stereographic, {220, 220}, 150), {0, 20, 0}, s),
+                                twirl_link({300, 300}, s)};
+         }},
+    };
+}
+
+TEST(Chain, HoldsEveryTolerance) {
+    constexpr unsigned kSeed = 1987;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    const double tols[] = {1, 1.0 / 16, 0.01, 1e-3, 1e-5, 1e-7, 0};
+    for (const ChainCase& c : chain_cases())
+        for (int n = 0; n < 3; ++n) {
+            Settings settings;
+            settings.tol = tols[random() % std::size(tols)];
+            SCOPED_TRACE(::testing::Message() << c.name << ", tol " << settings.tol);
+            const std::vector<Link> links = c.links(settings);
+            const Joined joined = joined_of(links);
+            ASSERT_TRUE(joined.picture) << joined.reason;
+            const Findings found = examine(*joined.picture->maps[0].blocks, links);
+            EXPECT_EQ(found.over, 0);
+            EXPECT_EQ(found.lost, 0);
+            EXPECT_EQ(found.invented, 0);
+            EXPECT_EQ(found.pixels, std::int64_t{links[0].size().width} * links[0].size().height);
+            EXPECT_GT(found.drawn, found.pixels / 4);
+            EXPECT_LE(found.bound, settings.tol > 0 ? std::max(settings.tol, 1e-9) : c.exact_bound);
+            if (settings.tol >= 0.01) {
+                EXPECT_LT(static_cast<double>(found.exact), c.most_exact * static_cast<double>(found.pixels));
+            }
+        }
+}
+
+// The smaller tolerance is that of the chain, and a link that is exact makes all of it so.
+TEST(Chain, TakesTheSmallerTolerance) {
+    const Size plate{310, 206};
+    Settings coarse, fine;
+    coarse.tol = 0.5;
+    fine.tol = 1e-4;
+    const auto chain = [&](const Settings& outer, const Settings& inner) {
+        return std::vector{pano_link(flat(plate, 80), flat(plate, 60), {9, 5, 3}, outer),
+                           lens_link("brown:k1=-0.2,k2=0.05", LensMode::undistort, plate, plate, inner)};
+    };
+    for (const auto& links : {chain(coarse, fine), chain(fine, coarse)})
+        EXPECT_LE(joined_of(links).picture->reached().max_error, 1e-4);
+    EXPECT_GT(joined_of(chain(coarse, coarse)).picture->reached().max_error, 1e-4);
+    Settings exact = coarse;
+    exact.scheme = Scheme::exact;
+    for (const auto& links : {chain(coarse, exact), chain(exact, coarse)}) {
+        const Reached reached = joined_of(links).picture->reached();
+        EXPECT_EQ(reached.exact_fraction, 1);
+        EXPECT_LT(reached.max_error, 1e-9);
+    }
+}
+
+// The coordinates of a picture with overscan begin at its display window.
+TEST(Chain, CountsFromTheDisplayWindow) {
+    const Size shown{310, 206}, all{350, 246};
+    const Point<int> origin{20, 20};
+    Settings settings;
+    const std::vector<Link> links{
+        pano_link(flat(shown, 80), flat({300, 220}, 90), {4, 3, 2}, settings),
+        lens_link("3de4:k1=0.1,k2=0.03", LensMode::undistort, shown, all, settings)};
+    const Joined joined = joined_of(links, origin);
+    ASSERT_TRUE(joined.picture) << joined.reason;
+    const Findings found = examine(*joined.picture->maps[0].blocks, links, origin);
+    EXPECT_EQ(found.over, 0);
+    EXPECT_EQ(found.lost, 0);
+    EXPECT_EQ(found.invented, 0);
+}
+
+// Two inverse maps are none: nothing moves, and nothing is lost.
+TEST(Chain, OfInverseMapsMovesNothing) {
+    const Size plate{310, 206};
+    Settings settings;
+    const char* const lens = "brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003,d=3.5,e=-2";
+    const std::vector<Link> links{lens_link(lens, LensMode::distort, plate, plate, settings),
+                                  lens_link(lens, LensMode::undistort, plate, plate, settings)};
+    const Joined joined = joined_of(links);
+    ASSERT_TRUE(joined.picture) << joined.reason;
+    const BlockMap& map = *joined.picture->maps[0].blocks;
+    double largest = 0;
+    int piece = 0;
+    for (int y = 20; y < 186; y += 7)
+        for (int x = 20; x < 290; x += 7) {
+            Point<double> p{};
+            ASSERT_TRUE(map.exact(x + 0.5, y + 0.5, 0, p, piece));
+            largest = std::max(largest, std::hypot(p.x - x - 0.5, p.y - y - 0.5));
+            const Jacobian j = map.jacobian(x + 0.5, y + 0.5, 0);
+            EXPECT_NEAR(j.x_i, 1, 1e-9);
+            EXPECT_NEAR(j.y_j, 1, 1e-9);
+            EXPECT_NEAR(j.x_j, 0, 1e-9);
+            EXPECT_NEAR(j.y_i, 0, 1e-9);
+        }
+    EXPECT_LT(largest, 1e-9);
+}
+
+TEST(Chain, SaysWhyItDoesNotJoin) {
+    const Size plate{310, 206};
+    const Settings settings;
+    const Link lens = lens_link("3de4:k1=0.1", LensMode::undistort, plate, plate, settings);
+    const Link pano = pano_link(flat(plate, 80), flat(plate, 60), {}, settings);
+    const Box shown{0, 0, plate.width, plate.height};
+    const auto reason = [&](const Picture& outer, const Picture& inner) {
+        const Joined joined = joined_picture(outer, inner, shown);
+        EXPECT_FALSE(joined.picture);
+        return joined.reason;
+    };
+    Picture other = pano.picture;
+    other.filter = Filter::bicubic;
+    EXPECT_EQ(reason(other, lens.picture), "the filters differ");
+    other = lens.picture;
+    other.output = Output::stmap;
+    EXPECT_EQ(reason(pano.picture, other), "its source is no picture in colour");
+    Settings blocks = settings;
+    blocks.scheme = Scheme::blocks;
+    const Link by_blocks = lens_link("3de4:k1=0.1", LensMode::undistort, plate, plate, blocks);
+    EXPECT_EQ(reason(by_blocks.picture, lens.picture), "it has a map or a scheme that does not join");
+    EXPECT_EQ(reason(pano.picture, by_blocks.picture), "its source has a map or a scheme that does not join");
+    other = pano.picture;
+    other.maps[0].layers[0].border = Border(Chart(Projection::rectilinear, 310, 206), Wrap::clamp);
+    EXPECT_EQ(reason(other, lens.picture), "wrap goes on beyond its source's edges");
+    // A mesh of small cells is quicker drawn by itself.
+    const Link dense = mesh_link(3, 40, 0, plate, plate, settings);
+    EXPECT_EQ(reason(dense.picture, lens.picture), "it has a map or a scheme that does not join");
+    const Link cube = pano_link(view(Projection::cubemap, {40, 240}, 90), flat(plate, 60), {}, settings);
+    EXPECT_EQ(reason(cube.picture, lens.picture), "its source has faces");
+}
+
+}  // namespace
+}  // namespace anamorph

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recipes of recipes: drawn by one resampling where that can be, and said to be; else as if the inner one were a file.
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr int kWidth = 240, kHeight = 160;
+
+std::string chain_of(const std::string& name) {
+    const auto input = open(name);
+    return input ? std::string(input->spec().get_string_attribute("anamorph:chain")) : "";
+}
+
+/// The amplitude of waves along x of a period in pixels, in the middle rows and columns of a picture's first channel.
+double amplitude(const std::string& name, double period) {
+    const std::vector<float> values = read_floats(name);
+    std::complex<double> sum = 0;
+    int count = 0;
+    for (int y = kHeight / 4; y < 3 * kHeight / 4; ++y)
+        for (int x = 40; x < 200; ++x, ++count)
+            sum += std::polar(1.0, -2 * std::numbers::pi * (x + 0.5) / period) *
+                   double{values[static_cast<std::size_t>(y * kWidth + x)]};
+    return 2 * std::abs(sum) / count;
+}
+
+class Chains : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("plate.exr", kWidth, kHeight);
+        write_text("grid.json",
+                   R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [[0, 0], [0.5, 0],
+            [1, 0], [0, 0.5], [0.55, 0.47], [1, 0.5], [0, 1], [0.5, 1], [1, 1]]})");
+    }
+
+    const std::string m_lens = "plate.exr.lens?lens=brown:k1=-0.21,k2=0.05&fov=84",
+                      m_pano = "view.pano?from=rectilinear&srcfov=84&fov=76&yaw=6&size=240x160&src=(" +
+                               m_lens + ")",
+                      m_warp = "view.warp?mesh=grid.json&src=(" + m_pano + ")";
+};
+
+TEST_F(Chains, SayWhatWasJoined) {
+    EXPECT_EQ(chain_of(m_lens), "");
+    EXPECT_EQ(chain_of(m_pano), "pano of lens");
+    EXPECT_EQ(chain_of(m_warp), "warp of pano of lens");
+    EXPECT_EQ(chain_of("v.map?u=x+0.5&src=(" + m_warp + ")"), "map of warp of pano of lens");
+    EXPECT_EQ(chain_of("v.drape?src=(" + m_warp + ")"),
+              "drape of a picture that is drawn first: drape does not join");
+    // A picture that is drawn first may itself be a chain.
+    EXPECT_EQ(chain_of("v.lens?lens=3de4:k1=0.1&concatenate=0&src=(" + m_pano + ")"),
+              "lens of a picture that is drawn first: concatenate=0");
+}
+
+TEST_F(Chains, AreThePictureThatTheyWouldBeWithoutLosses) {
+    for (const std::string& name : {m_pano, m_warp}) {
+        SCOPED_TRACE(name);
+        const std::vector<float> joined = read_floats(name), drawn = read_floats(name + "&concatenate=0");
+        double sum = 0;
+        for (std::size_t i = 0; i < joined.size(); ++i) sum += std::fabs(joined[i] - drawn[i]);
+        EXPECT_LT(sum / static_cast<double>(joined.size()), 0.02);
+        EXPECT_GT(sum, 0);
+    }
+}
+
+// The numbers are those of a chain of formulas written as one.
+TEST_F(Chains, AreOneMap) {
+    const std::string inner = "v.map?u=x+3*sin(y/20)&v=y&src=plate.exr",
+                      chain = "w.map?u=x&v=y+4*cos(x/25)&src=(" + inner + ")",
+                      one = "v.map?u=x+3*sin((y+4*cos(x/25))/20)&v=y+4*cos(x/25)&src=plate.exr";
+    EXPECT_EQ(chain_of(chain), "map of map");
+    for (const std::string keys : {"", "&filter=bicubic", "&output=stmap", "&tol=0.000001"}) {
+        SCOPED_TRACE(keys);
+        std::string nested = chain;
+        nested.insert(nested.find("&src="), keys);
+        nested.insert(nested.rfind("&src="), keys.starts_with("&output") ? "" : keys);
+        const std::vector<float> a = read_floats(nested), b = read_floats(one + keys);
+        std::size_t differ = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) differ += std::fabs(a[i] - b[i]) > 0.01f;
+        // Beyond the edges of the picture in the middle nothing is shown, which the one formula does not know.
+        EXPECT_LT(differ, a.size() / 20);
+    }
+}
+
+// Undistorted, turned, turned back and distorted again, a plate is what it was: waves of a fifth of the sampling rate stay.
+TEST_F(Chains, LoseNothingOnTheWay) {
+    constexpr double kPeriod = 5;
+    OIIO::ImageBuf waves(OIIO::ImageSpec(kWidth, kHeight, 1, OIIO::TypeFloat));
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const auto value =
+                static_cast<float>(0.5 + 0.4 * std::sin(2 * std::numbers::pi * (x + 0.5) / kPeriod));
+            waves.setpixel(x, y, &value);
+        }
+    write_image(waves, "waves.exr");
+    const std::string flat = "from=rectilinear&to=rectilinear&srcfov=84&fov=84&size=240x160&pitch=0.4",
+                      back = "from=rectilinear&to=rectilinear&srcfov=84&fov=84&size=240x160&srcpitch=0.4";
+    const auto chain = [&](const std::string& keys) {
+        return "c.pano?" + back + "&lens=brown:k1=-0.1,k2=0.02" + keys + "&src=(b.pano?" + flat + keys +
+               "&src=(waves.exr.lens?lens=brown:k1=-0.1,k2=0.02&fov=84" + keys + "))";
+    };
+    EXPECT_EQ(chain_of(chain("")), "pano of pano of lens");
+    EXPECT_GT(amplitude(chain(""), kPeriod), 0.99 * 0.4);
+    EXPECT_LT(amplitude(chain("&concatenate=0"), kPeriod), 0.8 * 0.4);
+}
+
+TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
+    write_text("dense.json", R"({"columns": 1, "rows": 1, "units": "fractions", "direction": "push",
+        "vertices": [[0, 0], [1, 0.02], [0.01, 1], [1, 1]]})");
+    const struct {
+        std::string outer, inner, reason;
+    } cases[] = {
+        {"v.pano?from=rectilinear&filter=bicubic", "plate.exr.lens?lens=3de4:k1=0.1", "the filters differ"},
+        {"v.pano?from=rectilinear&wrap=clamp", "plate.exr.lens?lens=3de4:k1=0.1",
+         "wrap goes on beyond its source's edges"},
+        {"v.pano?from=rectilinear", "plate.exr.lens?lens=3de4:k1=0.1&scheme=blocks",
+         "its source has a map or a scheme that does not join"},
+        {"v.pano?from=rectilinear&scheme=residual", "plate.exr.lens?lens=3de4:k1=0.1",
+         "it has a map or a scheme that does not join"},
+        {"v.pano?from=rectilinear", "plate.exr.map?u=x&v=y&direction=push",
+         "its source is inverted point by point"},
+        {"v.pano?from=rectilinear", "plate.exr.warp?mesh=dense.json",
+         "its source has a map or a scheme that does not join"},
+        {"v.pano?from=rectilinear", "plate.exr.drape?", "its source is no picture of maps"},
+        {"v.pano?from=cubemap", "plate.exr.pano?from=rectilinear&to=cubemap&size=40", "its source has faces"},
+        {"v.pano?from=equirectangular&pixels=centers",
+         "plate.exr.pano?from=rectilinear&to=equirectangular&size=200x100",
+         "its source closes on itself, but not at its edges"},
+        {"v.lens?lens=3de4:k1=0.1&colorspace=linear", "plate.exr.lens?lens=3de4:k1=0.1",
+         "colors are kept differently"},
+    };
+    for (const auto& c : cases) {
+        const std::string joins = c.outer.ends_with('?') ? "" : "&";
+        const std::string name = c.outer + joins + "src=(" + c.inner + ")";
+        SCOPED_TRACE(name);
+        EXPECT_THAT(chain_of(name), StartsWith(c.outer.substr(2, c.outer.find('?') - 2) + " of a picture"));
+        EXPECT_THAT(chain_of(name), testing::EndsWith(": " + c.reason));
+        // As of a file that holds all that the inner one has.
+        ASSERT_EQ(run("oiiotool -i '" + c.inner + "' -d float -o inner.exr").status, 0);
+        EXPECT_EQ(largest_difference(read_floats(name), read_floats(c.outer + joins + "src=inner.exr")), 0);
+    }
+}
+
+// Overscan of the picture in the middle is there, about its display window.
+TEST_F(Chains, KeepOverscan) {
+    const std::string all = "plate.exr.lens?lens=brown:k1=-0.25,k2=0.06&fov=70&size=all",
+                      back = "v.lens?mode=distort&lens=brown:k1=-0.25,k2=0.06&fov=70&src=(" + all + ")";
+    EXPECT_EQ(chain_of(back), "lens of lens");
+    EXPECT_LT(largest_difference(read_floats(back), read_floats("plate.exr")), 1e-3);
+    // Without it the corners are cut off.
+    const std::vector<float> cut = read_floats(
+        "v.lens?mode=distort&lens=brown:k1=-0.25,k2=0.06&fov=70&src=(plate.exr.lens?lens=brown:k1=-0.25,k2=0."
+        "06&"
+        "fov=70)");
+    EXPECT_EQ(cut[0], 0);
+    EXPECT_GT(cut[static_cast<std::size_t>(3 * (kHeight / 2 * kWidth + kWidth / 2))], 0);
+}
+
+// An ST-map of the whole chain draws it.
+TEST_F(Chains, HaveOneStmap) {
+    ASSERT_EQ(run("oiiotool '" + m_warp.substr(0, m_warp.find("&src=")) + "&output=stmap&src=(" + m_pano +
+                  ")' -o chain.exr")
+                  .status,
+              0);
+    const std::vector<float> by_map = read_floats("plate.exr.warp?mesh=chain.exr"),
+                             chain = read_floats(m_warp);
+    double sum = 0;
+    for (std::size_t i = 0; i < chain.size(); ++i) sum += std::fabs(chain[i] - by_map[i]);
+    EXPECT_LT(sum / static_cast<double>(chain.size()), 1e-3);
+}
+
+TEST_F(Chains, KeepIntegersAndParts) {
+    OIIO::ImageBuf ids(OIIO::ImageSpec(64, 48, 1, OIIO::TypeUInt32));
+    std::vector<std::uint32_t> values;
+    for (unsigned i = 0; i < 64 * 48; ++i) values.push_back(4000000001u + i);
+    ids.set_pixels(ids.roi(), OIIO::TypeUInt32, values.data());
+    write_image(ids, "ids.exr");
+    const std::string shift = "w.map?u=x+1&filter=nearest&src=(v.map?v=y+2&filter=nearest&src=ids.exr)";
+    EXPECT_EQ(chain_of(shift), "map of map");
+    const Pixels moved = read_pixels(shift);
+    ASSERT_EQ(moved.spec.format, OIIO::TypeUInt32);
+    const auto* pixels = reinterpret_cast<const std::uint32_t*>(moved.bytes.data());
+    EXPECT_EQ(pixels[0], 4000000001u + 2 * 64 + 1);
+    EXPECT_EQ(pixels[62 + 45 * 64], 4000000001u + 63 + 47 * 64);
+    EXPECT_EQ(pixels[63], 0u);
+
+    write_panorama("other.exr", 64, 48, OIIO::TypeFloat, 1);
+    ASSERT_EQ(run("oiiotool --native ids.exr other.exr --siappend -o two.exr").status, 0);
+    const auto input = open("w.map?u=x+1&src=(v.map?v=y+2&src=two.exr)");
+    ASSERT_TRUE(input && input->seek_subimage(1, 0));
+    EXPECT_EQ(input->spec(1, 0).get_string_attribute("anamorph:chain"), "map of map");
+    std::vector<float> second(64 * 48);
+    ASSERT_TRUE(input->read_image(1, 0, 0, 1, OIIO::TypeFloat, second.data()));
+    EXPECT_NEAR(second[5 + 7 * 64], panorama_value(6, 9, 0, 64, 48), 1e-5);
+}
+
+TEST_F(Chains, AreOnePicture) {
+    expect_one_picture(m_warp, 60, 50);
+    expect_one_picture(
+        "v.pano?yaw=180&pitch=30&size=200x150&src=(plate.exr.pano?from=rectilinear&to=equirectangular&"
+        "size=320x160&yaw=20)",
+        50, 40);
+    // So are its levels.
+    const auto input = open("view.warp?mesh=grid.json&mip=1&src=(" + m_lens + ")");
+    ASSERT_TRUE(input && input->seek_subimage(0, 2));
+    EXPECT_EQ(input->spec(0, 2).get_string_attribute("anamorph:chain"), "warp of lens");
+    EXPECT_FALSE(open("view.warp?mesh=grid.json&mip=1&src=(" + m_lens + ")")->seek_subimage(0, 8));
+}
+
+}  // namespace
+}  // namespace anamorph
