@@ -84,7 +84,7 @@ TEST_F(CacheConformance, conformance_15_no_tiles_are_kept_beyond_a_read) {
     write_panorama("fine.exr", 512, 256, OIIO::TypeFloat, 3, 256);
     for (int i = 0; i < 10; ++i)
         write_text(OIIO::Strutil::fmt::format("n{}.pano", i),
-                   "to=equirectangular\nsize=512x256\ntile=256\nyaw=20\nsrc=" +
+                   "to=equirectangular\nsize=512x256\ntile=256\nyaw=20\nconcatenate=0\nsrc=" +
                        (i == 9 ? std::string("fine.exr") : OIIO::Strutil::fmt::format("n{}.pano", i + 1)));
     std::vector<float> pixels;
     ASSERT_TRUE(read_through_cache("v.pano?size=32x32&tile=16&src=n0.pano", OIIO::ROI(0, 32, 0, 32), pixels))
