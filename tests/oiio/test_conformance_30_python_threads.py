@@ -15,7 +15,7 @@ with open("lines.csv", "w") as file:
     file.write("60,30,180,40,80,20,190,60\n")
 
 names = [f"city.exr.pano?size=96x64&tile=16&yaw={yaw}&pitch={yaw / 3}" for yaw in range(0, 360, 45)]
-names += [f"x.pano?size=96x64&src=y.pano?to=equirectangular&size=256x128&roll={roll}&src=city.exr" for roll in (20, 30)]
+names += [f"x.pano?concatenate=0&size=96x64&src=y.pano?to=equirectangular&size=256x128&roll={roll}&src=city.exr" for roll in (20, 30)]
 names += [f"city.exr.warp?mesh=grid.json&size=96x64&tile=16&amount={amount}" for amount in (0.5, 1)]
 names += [f"city.exr.morph?b=(city.exr.warp?mesh=grid.json)&features=lines.csv&size=96x64&t={t}" for t in (0.2, 0.8)]
 
