@@ -180,15 +180,6 @@ bool loses_values(const ImageSpec& spec) {
 }
 
 Frame frame_of(const ImageSpec& spec) {
-    const int full_width = spec.get_int_attribute("GPano:FullPanoWidthPixels");
-    const int full_height = spec.get_int_attribute("GPano:FullPanoHeightPixels");
-    const bool same_size = spec.get_int_attribute("GPano:CroppedAreaImageWidthPixels") == spec.width &&
-                           spec.get_int_attribute("GPano:CroppedAreaImageHeightPixels") == spec.height;
-    if (same_size && full_width >= spec.width && full_height >= spec.height) {
-        const int left = spec.get_int_attribute("GPano:CroppedAreaLeftPixels");
-        const int top = spec.get_int_attribute("GPano:CroppedAreaTopPixels");
-        return {full_width, full_height, {left, top, left + spec.width, top + spec.height}};
-    }
     if (spec.get_string_attribute("textureformat") == "CubeFace Environment" &&
         spec.height == std::int64_t{6} * spec.width)
         return {spec.width, spec.height, {0, 0, spec.width, spec.height}};

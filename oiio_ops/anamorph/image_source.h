@@ -41,13 +41,13 @@ StoredPixels stored_pixels(const OIIO::ImageSpec& spec);
 /// float, though it holds more digits, or other ones?
 bool loses_values(const OIIO::ImageSpec& spec);
 
-/// The data window inside the panorama: from the display window, or from GPano's cropped area where the image
-/// has one. An environment of six faces that is as high as these is whole: OpenEXR's display window is one.
+/// The data window inside the display window. An environment of six faces that is as high as these is whole: OpenEXR's display
+/// window is one.
 struct Frame {
-    int width = 0, height = 0;  ///< size of the panorama
-    Box data;                   ///< relative to the panorama's corner
+    int width = 0, height = 0;  ///< size of the display window
+    Box data;                   ///< relative to its corner
 
-    /// The panorama and the data window.
+    /// Both windows.
     SourceLevel level() const;
 };
 Frame frame_of(const OIIO::ImageSpec& spec);

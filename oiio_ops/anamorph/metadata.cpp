@@ -101,28 +101,58 @@ void read_projection(const std::string& text, SourceFacts& facts) {
     const std::size_t blank = text.find(' ');
     constexpr std::string_view kFov = " fov=";
     if (blank == std::string::npos || text.compare(blank, kFov.size(), kFov) != 0) return;
-    const std::string rest = text.substr(blank + kFov.size()), fov = rest.substr(0, rest.find(' '));
-    constexpr std::string_view kLens = " lens=";
+    std::string rest = text.substr(blank + kFov.size());
+    const std::string fov = rest.substr(0, rest.find(' '));
+    rest.erase(0, fov.size());
+    constexpr std::string_view kVfov = " vfov=", kLens = " lens=";
+    std::string vfov;
+    if (rest.compare(0, kVfov.size(), kVfov) == 0) {
+        vfov = rest.substr(kVfov.size(), rest.find(' ', 1) - kVfov.size());
+        rest.erase(0, kVfov.size() + vfov.size());
+    }
     try {
         const Projection projection = projection_from_name(text.substr(0, blank));
-        if (rest.compare(fov.size(), kLens.size(), kLens) == 0)
-            facts.lens = LensModel::parse(rest.substr(fov.size() + kLens.size()));
+        if (rest.compare(0, kLens.size(), kLens) == 0)
+            facts.lens = LensModel::parse(rest.substr(kLens.size()));
         facts.projection = projection;
     } catch (const Error&) {
         return;
     }
     facts.said_by = kPanoramaProjection;
     if (Strutil::string_is_float(fov)) facts.fov = OIIO::Strutil::from_string<float>(fov);
+    if (Strutil::string_is_float(vfov)) facts.vfov = OIIO::Strutil::from_string<float>(vfov);
+}
+
+/// A number of metadata. EXR and TIFF bring whole ones as integers, which are no floats to OpenImageIO.
+double number_of(const ImageSpec& spec, const std::string& name) {
+    const double value = spec.get_float_attribute(name);
+    return value != 0 ? value : static_cast<double>(spec.get_int_attribute(name));
+}
+
+/// The part of a panorama and its camera's pose, by Google's Photo Sphere metadata.
+void read_photo_sphere(const ImageSpec& spec, SourceFacts& facts) {
+    const auto number = [&](const char* name) { return number_of(spec, std::string("GPano:") + name); };
+    const PanoramaCrop crop{number("FullPanoWidthPixels"),         number("FullPanoHeightPixels"),
+                            number("CroppedAreaLeftPixels"),       number("CroppedAreaTopPixels"),
+                            number("CroppedAreaImageWidthPixels"), number("CroppedAreaImageHeightPixels")};
+    constexpr double kMost = 1 << 24;
+    const bool is_possible = crop.w > 0 && crop.h > 0 && crop.w <= crop.width && crop.width <= kMost &&
+                             crop.y >= 0 && crop.y + crop.h <= crop.height && crop.height <= kMost &&
+                             std::fabs(crop.x) <= crop.width;
+    const bool is_whole = crop.w == crop.width && crop.h == crop.height && crop.x == 0;
+    if (is_possible && !is_whole) facts.crop = crop;
+    const auto angle = [&](const char* name, std::optional<double>& to) {
+        if (const double degrees = number(name); degrees != 0 && std::fabs(degrees) <= 360) to = degrees;
+    };
+    angle("PoseHeadingDegrees", facts.yaw);
+    angle("PosePitchDegrees", facts.pitch);
+    angle("PoseRollDegrees", facts.roll);
 }
 
 /// The focal length by Exif, in the order in which Hugin asks for it: that of a camera with a film of 36 x 24 mm whose
 /// picture has the same diagonal, else by the pixels there are on the focal plane.
 void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
-    // EXR and TIFF bring whole numbers as integers, which are no floats to OpenImageIO.
-    const auto number = [&](const char* name) {
-        const double value = spec.get_float_attribute(name);
-        return value != 0 ? value : static_cast<double>(spec.get_int_attribute(name));
-    };
+    const auto number = [&](const char* name) { return number_of(spec, name); };
     // What is no lens's, below .03 degrees or above 178 across, is taken for a slip.
     const double longer = std::max(facts.width, facts.height);
     const auto take = [&](double pixels, const std::string& by) {
@@ -174,6 +204,7 @@ SourceFacts facts_of(const ImageSpec& spec) {
         says("GPano:ProjectionType", Projection::fisheye);
     else if (texture == "CubeFace Environment" && frame.height == 6 * std::int64_t{frame.width})
         says("textureformat", Projection::cubemap);
+    read_photo_sphere(spec, facts);
     return facts;
 }
 

@@ -49,15 +49,36 @@ void StoredOrder::turn(const std::byte* from, std::byte* to, int width, int heig
                         static_cast<std::size_t>(pixel));
 }
 
+namespace {
+
+/// Turns the place of a part of a panorama, as Google's Photo Sphere metadata have it of the stored image.
+void turn_photo_sphere(const StoredOrder& order, OIIO::ImageSpec& spec) {
+    const auto name = [](const char* what, const char* side) {
+        return std::string("GPano:") + what + side + "Pixels";
+    };
+    const auto number = [&](const std::string& key) { return spec.get_int_attribute(key); };
+    const Size whole{number(name("FullPano", "Width")), number(name("FullPano", "Height"))},
+        part{number(name("CroppedAreaImage", "Width")), number(name("CroppedAreaImage", "Height"))};
+    const int x = number(name("CroppedArea", "Left")), y = number(name("CroppedArea", "Top"));
+    const Box box = order.upright_box({x, y, x + part.width, y + part.height}, whole);
+    const Size size = order.upright_size(whole);
+    for (const auto& [key, value] : {std::pair{name("FullPano", "Width"), size.width},
+                                     {name("FullPano", "Height"), size.height},
+                                     {name("CroppedAreaImage", "Width"), box.width()},
+                                     {name("CroppedAreaImage", "Height"), box.height()},
+                                     {name("CroppedArea", "Left"), box.x0},
+                                     {name("CroppedArea", "Top"), box.y0}})
+        if (spec.find_attribute(key)) spec.attribute(key, value);
+}
+
+}  // namespace
+
 OIIO::ImageSpec upright(const OIIO::ImageSpec& spec) {
     OIIO::ImageSpec out = spec;
     if (spec.find_attribute("Orientation")) out.attribute("Orientation", 1);
     const StoredOrder order(spec);
     if (order.is_upright()) return out;
-    // The windows say from here on what GPano may have said of the stored image.
-    for (const char* name : {"FullPanoWidthPixels", "FullPanoHeightPixels", "CroppedAreaImageWidthPixels",
-                             "CroppedAreaImageHeightPixels", "CroppedAreaLeftPixels", "CroppedAreaTopPixels"})
-        out.erase_attribute(std::string("GPano:") + name);
+    turn_photo_sphere(order, out);
     const Frame frame = frame_of(spec);
     const Size stored{frame.width, frame.height}, size = order.upright_size(stored);
     const Box data = order.upright_box(frame.data, stored);

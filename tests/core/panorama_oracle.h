@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "anamorph/panorama/panorama.h"
@@ -27,6 +28,8 @@ struct View {
     bool centers = false;
     LensModel lens = {};
     mutable std::shared_ptr<const class LensOracle> solved = {};
+    double vfov = 0;                     ///< 0: square pixels
+    std::optional<double> horizon = {};  ///< pixels from the upper edge
 };
 
 /// A picture through a lens, in a projection that may have it.
@@ -42,7 +45,7 @@ inline View view_through(const std::string& lens, const Size& size, double fov) 
 /// The chart that is judged.
 inline Chart chart_of(const View& v) {
     return Chart(v.projection, v.width, v.height, v.fov,
-                 v.centers ? PixelSpacing::centers : PixelSpacing::edges, "", 1, v.lens);
+                 v.centers ? PixelSpacing::centers : PixelSpacing::edges, "", 1, v.lens, {v.vfov, v.horizon});
 }
 
 /// Half the plane's width, in its unit: the image of half the field of view.
@@ -67,6 +70,27 @@ inline Real half_plane(const View& v) {
     }
 }
 
+/// Half the plane's height, in its unit, of a vertical field of view: what half of it is above straight ahead.
+inline Real half_plane_up(const View& v) {
+    const Real half = Real(v.vfov) / 2, radians = half / 180 * kPi;
+    const auto tangent = [](Real degrees) {
+        return degrees > 45 ? 1 / std::tan((90 - degrees) / 180 * kPi) : std::tan(degrees / 180 * kPi);
+    };
+    switch (v.projection) {
+        case Projection::rectilinear:
+        case Projection::cylindrical:
+            return tangent(half);
+        case Projection::mercator:
+            return std::log(std::tan(kPi / 4 + radians / 2));
+        case Projection::equisolid:
+            return 2 * std::sin(radians / 2);
+        case Projection::stereographic:
+            return 2 * tangent(half / 2);
+        default:
+            return radians;
+    }
+}
+
 inline int face_width(const View& v) {
     switch (v.projection) {
         case Projection::cubemap:
@@ -86,8 +110,13 @@ struct Scale {
 };
 inline Scale scale(const View& v) {
     const int columns = face_width(v), rows = has_faces(v.projection) ? columns : v.height;
-    const Real wide = 2 * half_plane(v), high = wide * rows / columns;
+    const Real wide = 2 * half_plane(v), high = v.vfov != 0 ? 2 * half_plane_up(v) : wide * rows / columns;
     return v.centers ? Scale{(columns - 1) / wide, (rows - 1) / high} : Scale{columns / wide, rows / high};
+}
+
+/// The row of the plane's middle.
+inline Real middle_row(const View& v, const Piece& piece) {
+    return v.horizon ? Real(*v.horizon) : Real(piece.box.y0 + piece.box.y1) / 2;
 }
 
 inline Vector along(const glm::dmat3& axes, const Vector& local) {
@@ -218,8 +247,8 @@ inline bool ray_of(const View& v, const Piece& piece, Real x, Real y, Vector& ra
         x = ideal.x, y = ideal.y;
     }
     const Scale s = scale(v);
-    const Real px = (x - Real(piece.box.x0 + piece.box.x1) / 2) / s.x,
-               py = (y - Real(piece.box.y0 + piece.box.y1) / 2) / s.y, r = std::hypot(px, py);
+    const Real px = (x - Real(piece.box.x0 + piece.box.x1) / 2) / s.x, py = (y - middle_row(v, piece)) / s.y,
+               r = std::hypot(px, py);
     const Real azimuth = std::atan2(py, px);
     const auto from_axis = [&](Real t) {
         ray = {std::sin(t) * std::cos(azimuth), std::sin(t) * std::sin(azimuth), std::cos(t)};
@@ -289,6 +318,7 @@ inline Vector turned_back(Vector v, const Orientation& held) {
     turn(v.z, v.x, -held.yaw);
     turn(v.y, v.z, -held.pitch);
     turn(v.x, v.y, -held.roll);
+    turn(v.z, v.x, -held.ahead);
     return v;
 }
 
@@ -301,7 +331,7 @@ inline Point<long double> point_of(const View& view, const Piece& piece, const V
     }
     const View& v = view;
     const Scale s = scale(v);
-    const Real cx = Real(piece.box.x0 + piece.box.x1) / 2, cy = Real(piece.box.y0 + piece.box.y1) / 2;
+    const Real cx = Real(piece.box.x0 + piece.box.x1) / 2, cy = middle_row(v, piece);
     const Real rho = std::hypot(ray.x, ray.y), level = std::hypot(ray.x, ray.z), t = std::atan2(rho, ray.z);
     const auto at = [&](Real px, Real py) { return Point<long double>{px * s.x + cx, py * s.y + cy}; };
     const auto radial = [&](Real radius) {

@@ -98,6 +98,16 @@ class ParameterEnds : public InFolder {
         if (key == "from" && faces.columns > 0) sources[0] = value + ".exr";
         if (key == "to" && faces.columns > 0)
             add("size", std::to_string(2 * faces.columns) + "x" + std::to_string(2 * faces.rows));
+        if (key == "vfov" || key == "srcvfov") {
+            const std::string of = key == "vfov" ? "" : "src";
+            add(of.empty() ? "to" : "from", "fisheye");
+            arguments.push_back({of + "fov", "360"});
+        }
+        for (const std::string of : {"", "src"}) {
+            if (key != of + "focal" && key != of + "sensor") continue;
+            add(of.empty() ? "to" : "from", "rectilinear");
+            if (key == of + "sensor") arguments.push_back({of + "focal", "24"});
+        }
         if (key == "surface" && value == "positions") add("positions", "city.exr");
         if (key == "frame" && operation.name == "pano") add("to", "formula");
         if (key == "frame" && operation.name == "figure") {

@@ -37,6 +37,41 @@ void check_fov(Projection projection, double fov, const Setting& setting, const 
                         " degrees for " + name);
 }
 
+/// A length of the plane, and how far it is off at most.
+struct Length {
+    long double value;
+    double error;
+};
+
+/// Twice the distance in the plane from straight ahead to the direction half of `degrees` above it. No number where there is none.
+Length height_of(Projection projection, double degrees, const Setting& setting) {
+    const long double half = std::numbers::pi_v<long double> / 180 * degrees / 2;
+    const long double s = std::sin(half), c = degrees == 180 ? 0 : std::cos(half);
+    using R = Rounded<long double>;
+    // The angle is off by 3 units of it, at most pi, and libm by 8 of what it gives (Rounded::kLibm).
+    const auto rounded = [](long double value) {
+        const double error = 18 * R::kUnit, at = static_cast<double>(value);
+        R r = R::near(at, error + 0x1p-53 * std::fabs(at));
+        r.error = error;
+        return r;
+    };
+    return with_projection(projection, [&](auto formulas) -> Length {
+        const Point<long double> p = formulas.point(Ray<long double>{0, -s, c}, setting);
+        const Point<R> bound = formulas.point(Ray<R>{R(0), rounded(-s), rounded(c)}, setting);
+        return {2 * std::fabs(p.y), 2 * bound.y.error};
+    });
+}
+
+/// The largest vertical field of view of a projection, which is one piece.
+double most_vfov(Projection projection) {
+    const FieldOfView limits = fov_of(projection);
+    return with_projection(projection, [](auto formulas) { return formulas.counted == Counted::azimuth; })
+               ? 180
+               : limits.most;
+}
+// Heights of the plane that are taken for endless.
+constexpr double kEndless = 1e6;
+
 /// The faces of a layout at their places. Throws Error unless they are square.
 std::vector<Piece> face_pieces(Projection projection, int width, int height, const std::string& parameter) {
     const FaceGrid grid = faces_of(projection);
@@ -104,9 +139,59 @@ double Chart::default_fov(Projection projection) {
     return fov_of(projection).standard;
 }
 
+double plane_width(Projection projection, double fov, double d) {
+    Setting setting;
+    setting.distance = d;
+    const long double width =
+        with_projection(projection, [&](auto formulas) { return formulas.width(fov, setting); });
+    return std::isfinite(width) && width > 0 ? static_cast<double>(width) : 0;
+}
+double plane_height(Projection projection, double vfov, double d) {
+    if (has_faces(projection) || !(vfov > 0 && vfov <= most_vfov(projection))) return 0;
+    Setting setting;
+    setting.distance = d;
+    const long double height = height_of(projection, vfov, setting).value;
+    return height > 0 && height < kEndless ? static_cast<double>(height) : 0;
+}
+namespace {
+
+/// The least number up to `most` for which a rising function is at least `wanted`, or `most`.
+template <class Function>
+double where_it_reaches(const Function& function, double wanted, double most) {
+    double low = 0, high = most;
+    for (double middle; (middle = 0.5 * (low + high)) > low && middle < high;)
+        (function(middle) < wanted ? low : high) = middle;
+    return high;
+}
+
+/// What plane_width() and plane_height() give, which is 0 where it is endless.
+double or_endless(double length) {
+    return length > 0 ? length : HUGE_VAL;
+}
+
+}  // namespace
+
+double fov_of_plane_width(Projection projection, double width, double d) {
+    Setting setting;
+    setting.distance = d;
+    const double most = with_projection(
+        projection, [&](auto formulas) { return formulas.most_fov(fov_of(projection), setting); });
+    const auto function = [&](double fov) { return or_endless(plane_width(projection, fov, d)); };
+    return where_it_reaches(function, width, most);
+}
+double vfov_of_plane_height(Projection projection, double height, double d) {
+    const auto function = [&](double vfov) { return or_endless(plane_height(projection, vfov, d)); };
+    return where_it_reaches(function, height, most_vfov(projection));
+}
+
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
-             const std::string& prefix, double d, const LensModel& lens)
-    : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing) {
+             const std::string& prefix, double d, const LensModel& lens, const VerticalField& vertical)
+    : m_projection(projection),
+      m_width(width),
+      m_height(height),
+      m_fov(fov),
+      m_spacing(spacing),
+      m_vertical(vertical) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
         throw Error(size_name(prefix), size, "must be 1x1 to 16777216x16777216 pixels");
@@ -119,8 +204,30 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
         m_pieces = face_pieces(projection, width, height, size_name(prefix));
     else
         m_pieces = {Piece{{0, 0, width, height}}};
+    check_vertical(prefix, lens);
     set_scale(prefix, lens);
     set_branches();
+}
+
+void Chart::check_vertical(const std::string& prefix, const LensModel& lens) const {
+    const double vfov = m_vertical.fov;
+    const std::string parameter = prefix + "vfov", name(name_of(m_projection));
+    if (vfov != 0 && (m_pieces.size() > 1 || fov_of(m_projection).fixed))
+        throw Error(parameter, brief(vfov), name + " has none but its own");
+    if (vfov != 0 && plane_height(m_projection, vfov, m_setting.distance.d) == 0) {
+        const double most = most_vfov(m_projection);
+        const bool is_open = plane_height(m_projection, most, m_setting.distance.d) == 0;
+        throw Error(parameter, brief(vfov),
+                    "must be above 0 and " + std::string(is_open ? "below " : "up to ") + brief(most) +
+                        " degrees for " + name);
+    }
+    if (!m_vertical.horizon) return;
+    if (m_pieces.size() > 1 || lens.kind != LensModel::Kind::none)
+        throw Error(prefix + "horizon", brief(*m_vertical.horizon),
+                    "must be that of a picture in one piece, without a lens");
+    if (!(std::fabs(*m_vertical.horizon) <= kMaxSize))
+        throw Error(prefix + "horizon", brief(*m_vertical.horizon),
+                    "must be a number up to " + std::to_string(kMaxSize));
 }
 
 void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
@@ -141,15 +248,23 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     }
     const double units =
         with_projection(m_projection, [&](auto formulas) { return formulas.width_units(m_fov, m_setting); });
-    const auto constant = [&](long double value) {
-        return Constant(value, static_cast<double>(value) * units * Rounded<long double>::kUnit);
+    double error_down = units * Rounded<long double>::kUnit;  // relative
+    long double plane_down = plane / columns * rows;
+    if (m_vertical.fov != 0) {
+        const Length height = height_of(m_projection, m_vertical.fov, m_setting);
+        plane_down = height.value;
+        down = (m_spacing == PixelSpacing::centers ? rows - 1 : rows) / plane_down;
+        error_down = height.error / static_cast<double>(height.value) + 8 * Rounded<long double>::kUnit;
+    }
+    const auto constant = [&](long double value, double relative) {
+        return Constant(value, static_cast<double>(value) * relative);
     };
-    m_sx = constant(across);
-    m_sy = constant(down);
-    m_per_x = constant(1 / across);
-    m_per_y = constant(1 / down);
+    m_sx = constant(across, units * Rounded<long double>::kUnit);
+    m_sy = constant(down, error_down);
+    m_per_x = constant(1 / across, units * Rounded<long double>::kUnit);
+    m_per_y = constant(1 / down, error_down);
     if (lens.kind == LensModel::Kind::none) return;
-    const Lens::Plane half{plane / 2, plane / 2 * rows / columns, 1 / across, 1 / down};
+    const Lens::Plane half{plane / 2, plane_down / 2, 1 / across, 1 / down};
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
     m_lens =
         std::make_shared<const Lens>(lens, lensed, std::string(name_of(m_projection)), half, prefix + "lens");
@@ -161,9 +276,11 @@ void Chart::set_branches() {
         m_closed = formulas.closes && m_fov == 360;
         m_turns = formulas.closes;
         m_pieces_see_all = m_pieces.size() > 1 && formulas.faces_see_all(m_setting);
-        m_poles = formulas.has_pole_rows && m_closed && m_width == 2 * m_height;
-        const double tangent =
-            formulas.largest_tangent(0.5 * m_width / scale_x(), 0.5 * m_height / scale_y());
+        const double middle = m_vertical.horizon.value_or(0.5 * m_height);
+        const bool is_whole = m_vertical.fov == 0 ? m_width == 2 * m_height : m_vertical.fov == 180;
+        m_poles = formulas.has_pole_rows && m_closed && is_whole && middle == 0.5 * m_height;
+        const double tangent = formulas.largest_tangent(
+            0.5 * m_width / scale_x(), std::max(std::fabs(middle), std::fabs(m_height - middle)) / scale_y());
         m_setting.reach = kFarOut * std::max(1.0, tangent);
         const int across = m_pieces[0].box.width();
         const bool joined = faces_of(m_projection).joined;
@@ -175,13 +292,16 @@ void Chart::set_branches() {
             // Of joined faces the middle of all stands for (0, 0), without rounding: sides and scales are multiples of 1/2.
             b.pixel_x = joined ? 0.5 * m_width + b.centre_x * scale_x() : 0.5 * (box.x0 + box.x1);
             b.pixel_y = joined ? 0.5 * m_height + b.centre_y * scale_y() : 0.5 * (box.y0 + box.y1);
+            if (m_vertical.horizon) b.pixel_y = middle;
             m_branches.push_back(b);
         }
     });
 }
 
 Chart Chart::resized(int width, int height) const {
-    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance.d);
+    VerticalField vertical = m_vertical;
+    if (vertical.horizon) *vertical.horizon *= static_cast<double>(height) / m_height;
+    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance.d, {}, vertical);
     chart.m_lens = m_lens;
     return chart;
 }

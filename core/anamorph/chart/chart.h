@@ -75,6 +75,22 @@ bool rows_turn(Projection projection);
 /// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
+/// The size of the plane that a field of view in degrees covers, across straight ahead or from top to bottom: in radians, tangents and
+/// so on, as the projection's formulas have it. 0 where there is none. `d`: the distance of the Pannini projection.
+double plane_width(Projection projection, double fov, double d = 1);
+double plane_height(Projection projection, double vfov, double d = 1);
+/// The fields of view that cover a width and a height of the plane, at most what the projection shows.
+double fov_of_plane_width(Projection projection, double width, double d = 1);
+double vfov_of_plane_height(Projection projection, double height, double d = 1);
+
+/// How a picture lies in its projection's plane from top to bottom.
+struct VerticalField {
+    double fov =
+        0;  ///< vertical field of view in degrees, as if the plane's middle were the picture's; 0: square pixels
+    std::optional<double> horizon =
+        {};  ///< pixels from the upper edge to the plane's middle; by default half the height
+};
+
 /// One smooth piece of a chart: its place in the image, and its axes (right, down, forward) as columns
 /// in the frame of rays. Layouts of faces have more than one.
 struct Piece {
@@ -98,12 +114,12 @@ class Chart {
     static constexpr double kMostDistance = 1000;
 
     /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
-    /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `prefix` is put
-    /// before "fov", "size", "d" and "lens" in errors, and "src" before "size" is "source ". Throws Error on a value out
-    /// of range.
+    /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `vertical`: only of images that
+    /// are one piece, and a horizon only of those without a lens. `prefix` is put before "fov", "vfov", "size", "d" and "lens" in
+    /// errors, and "src" before "size" is "source ". Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
-          const LensModel& lens = {});
+          const LensModel& lens = {}, const VerticalField& vertical = {});
 
     /// The horizontal field of view that a chart of this projection has unless it is given one, in degrees.
     static double default_fov(Projection projection);
@@ -115,6 +131,7 @@ class Chart {
     int width() const { return m_width; }
     int height() const { return m_height; }
     double fov() const { return m_fov; }
+    const VerticalField& vertical() const { return m_vertical; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
     /// The lens; null where there is none, as in most pictures.
@@ -124,7 +141,7 @@ class Chart {
     bool closed() const { return m_closed; }
     /// The width of a full turn in pixels: that of the image, or one less where fields of view run between pixel centres.
     int period() const { return m_spacing == PixelSpacing::edges ? m_width : m_width - 1; }
-    /// Do the first and last rows touch the poles (equirectangular over the full 180 degrees)?
+    /// Do the first and last rows touch the poles (a closed equirectangular image over the full 180 degrees)?
     bool reaches_poles() const { return m_poles; }
     /// Pixels per unit of the chart plane at pieces()[0].
     double scale_x() const { return m_sx.value(); }
@@ -217,6 +234,7 @@ class Chart {
     template <class T>
     Point<T> to_plane(const T& x, const T& y, const Branch& branch) const;
 
+    void check_vertical(const std::string& prefix, const LensModel& lens) const;
     void set_scale(const std::string& prefix, const LensModel& lens);
     void set_branches();
 
@@ -224,6 +242,7 @@ class Chart {
     int m_width, m_height;
     double m_fov;
     PixelSpacing m_spacing;
+    VerticalField m_vertical;
     Setting m_setting;
     Counted m_counted = Counted::none;
     /// Pixels per unit of the plane, and units per pixel.

@@ -47,7 +47,15 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         key += std::to_string(facts.width) + "x" + std::to_string(facts.height) + " " +
                std::to_string(image.channels) + " \"" + image.color_space + "\" ";
         if (facts.projection) key += std::string(name_of(*facts.projection)) + " as " + facts.said_by;
-        if (facts.fov) key += " fov=" + shortest(*facts.fov);
+        for (const auto& [name, value] : {std::pair{" fov=", facts.fov},
+                                          {" vfov=", facts.vfov},
+                                          {" yaw=", facts.yaw},
+                                          {" pitch=", facts.pitch},
+                                          {" roll=", facts.roll}})
+            if (value) key += name + shortest(*value);
+        if (const std::optional<PanoramaCrop>& crop = facts.crop)
+            for (const double value : {crop->width, crop->height, crop->x, crop->y, crop->w, crop->h})
+                key += " crop " + shortest(value);
         if (facts.lens) key += " lens=" + facts.lens->text();
         if (facts.focal_length)
             key += " focal length=" + shortest(*facts.focal_length) + " by " + facts.focal_length_said_by;

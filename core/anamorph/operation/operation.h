@@ -29,6 +29,12 @@ namespace anamorph {
 
 struct Picture;
 
+/// A part of a panorama, in pixels of the whole one, whatever size it was brought to since.
+struct PanoramaCrop {
+    double width = 0, height = 0;       ///< of the whole panorama
+    double x = 0, y = 0, w = 0, h = 0;  ///< the upper left corner and the size of the part, which may lie across the seam
+};
+
 /// The facts of a source that are known before a pixel is read.
 struct SourceFacts {
     int width = 0, height = 0;
@@ -36,8 +42,12 @@ struct SourceFacts {
     /// in degrees, and its lens.
     std::optional<Projection> projection = {};
     std::string said_by = {};
-    std::optional<double> fov = {};
+    std::optional<double> fov = {}, vfov = {};
     std::optional<LensModel> lens = {};
+    /// The part of a panorama that it says it is, of an equirectangular one of 180 degrees from top to bottom.
+    std::optional<PanoramaCrop> crop = {};
+    /// How it says that its camera was held, in degrees.
+    std::optional<double> yaw = {}, pitch = {}, roll = {};
     /// The focal length of the camera it was taken with, in pixels, and what says so.
     std::optional<double> focal_length = {};
     std::string focal_length_said_by = {};

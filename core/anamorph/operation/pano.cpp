@@ -2,6 +2,8 @@
 #include "anamorph/operation/pano.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -66,6 +68,25 @@ ParameterTable make_pano_table() {
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture, edge to edge, or of each of its faces: " +
                          limited_fovs() + "; defaults by projection as for srcfov")),
+        number(
+            "srcvfov", "degrees", "", 1e-6, 360,
+            "vertical field of view of the source, where its pixels are not square; srcfov is then 360 for "
+            "projections that close, and for others what square pixels make of it, unless it is given"),
+        number(
+            "vfov", "degrees", "", 1e-6, 360,
+            "vertical field of view of the picture; without fov that is 360 for projections that close, and "
+            "for others what square pixels make of vfov and size. With both, pixels need not be square"),
+        number("srcfocal", "mm", "", 1e-3, 1e6,
+               "focal length of the source's camera, in place of srcfov, for a sensor as wide as srcsensor"),
+        number("srcsensor", "mm", "36", 1e-3, 1e6, "width of the source's sensor or film, for srcfocal"),
+        number("focal", "mm", "", 1e-3, 1e6,
+               "focal length of the picture's camera, in place of fov, for a sensor as wide as sensor"),
+        number("sensor", "mm", "36", 1e-3, 1e6, "width of the picture's sensor or film, for focal"),
+        text(
+            "srccrop",
+            "the part of a whole panorama that the source is: WxH+X+Y, the pixels of the whole and the upper "
+            "left corner of the source in it, as in 8000x4000+1200+900; srcfov and srcvfov are then the "
+            "whole's; by default as the image says (GPano:CroppedArea...), also of one that was resized"),
         number("srcd", "", "1", 0, Chart::kMostDistance,
                "Pannini's distance d of the source, for from=pannini"),
         number("d", "", "1", 0, Chart::kMostDistance,
@@ -75,12 +96,15 @@ ParameterTable make_pano_table() {
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
                "the camera's turn about its axis, clockwise; roll is applied first, then pitch, then yaw"),
-        number("srcyaw", "degrees", "0", -kInfinity, kInfinity,
-               "how the source's camera was held: turned to the right"),
-        number("srcpitch", "degrees", "0", -kInfinity, kInfinity,
-               "how the source's camera was held: tilted up"),
-        number("srcroll", "degrees", "0", -kInfinity, kInfinity,
-               "how the source's camera was held: turned about its axis, clockwise; in the same order"),
+        number("srcyaw", "degrees", "", -kInfinity, kInfinity,
+               "how the source's camera was held: turned to the right; by default as the image says "
+               "(GPano:PoseHeadingDegrees), else 0"),
+        number("srcpitch", "degrees", "", -kInfinity, kInfinity,
+               "how the source's camera was held: tilted up; by default as the image says "
+               "(GPano:PosePitchDegrees), else 0"),
+        number("srcroll", "degrees", "", -kInfinity, kInfinity,
+               "how the source's camera was held: turned about its axis, clockwise; in the same order; by "
+               "default as the image says (GPano:PoseRollDegrees), else 0"),
         text("srclens",
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
@@ -117,25 +141,33 @@ ParameterTable make_pano_table() {
     return table;
 }
 
-Size natural_size(Projection projection, double fov, double width) {
+/// What a picture covers, and its height over its width where its size does not say it.
+struct Field {
+    double fov;
+    VerticalField vertical = {};
+    double aspect = 1;
+};
+
+Size natural_size(const Field& field, double width) {
     const double limit = kMaxSide;
     const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
-    const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
+    const int h = static_cast<int>(std::clamp(std::round(w * field.aspect), 1.0, limit));
     return {w, h};
 }
 
 /// The picture's size where none was given: as many pixels per radian at its centre as the source has. `magnified`: by
 /// its lens there.
-Size default_size(Projection projection, double fov, double d, double magnified, const Chart& source) {
+Size default_size(Projection projection, const Field& field, double d, double magnified,
+                  const Chart& source) {
     const int probe = 1200;  // holds whole faces of every cube layout
-    const Size shape = natural_size(projection, fov, probe);
-    const Chart chart(projection, shape.width, shape.height, fov, PixelSpacing::edges, "", d);
+    const Size shape = natural_size(field, probe);
+    const Chart chart(projection, shape.width, shape.height, field.fov, PixelSpacing::edges, "", d);
     const double width =
         probe * source.pixels_per_radian() / (chart.pixels_per_radian() * std::max(magnified, 1e-3));
-    const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
+    const double most = kMaxDefaultSize / std::max(1.0, field.aspect);
     const int faces = std::max(1, faces_of(projection).columns);
     const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
-    return natural_size(projection, fov, face * faces);
+    return natural_size(field, face * faces);
 }
 
 struct Taken {
@@ -147,8 +179,9 @@ struct Taken {
 Taken source_projection(const ParameterValues& values, const SourceFacts& source) {
     if (values.given("from")) return {projection_from_name(values.text("from"), "from"), "given"};
     if (source.projection) return {*source.projection, "as " + source.said_by + " says"};
-    if (std::int64_t{source.width} == std::int64_t{source.height} * 2)
-        return {Projection::equirectangular, "assumed from the 2:1 shape"};
+    const double width = source.crop ? source.crop->width : source.width,
+                 height = source.crop ? source.crop->height : source.height;
+    if (width == 2 * height) return {Projection::equirectangular, "assumed from the 2:1 shape"};
     if (std::int64_t{source.width} * 6 == source.height)
         return {Projection::cubemap, "assumed from the 1:6 shape"};
     throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
@@ -156,9 +189,64 @@ Taken source_projection(const ParameterValues& values, const SourceFacts& source
                 projection_names());
 }
 
-double field_of_view(const ParameterValues& values, std::string_view name, Projection projection) {
-    if (!values.given(name)) return Chart::default_fov(projection);
-    return values.number(name);
+/// Is a key given that not all tables have?
+bool is_given(const ParameterValues& values, const std::string& name) {
+    return values.knows(name) && values.given(name);
+}
+
+/// The horizontal field of view that is asked for, in degrees or by a focal length; none where it is not. `of`: "src" or nothing.
+std::optional<double> asked_fov(const ParameterValues& values, const std::string& of, Projection projection,
+                                double d) {
+    const std::string fov = of + "fov", focal = of + "focal", sensor = of + "sensor";
+    if (!is_given(values, focal)) {
+        if (is_given(values, sensor))
+            throw Error(sensor, printable(values.text(sensor)), "must be given together with " + focal);
+        return values.given(fov) ? std::optional(values.number(fov)) : std::nullopt;
+    }
+    const std::string text = printable(values.text(focal));
+    if (values.given(fov)) throw Error(focal, text, "must not be given together with " + fov);
+    if (fov_of(projection).fixed || has_faces(projection))
+        throw Error(
+            focal, text,
+            "must be of a picture in one piece, which " + std::string(name_of(projection)) + " is not");
+    // The plane's unit is the focal length.
+    const double width = values.number(sensor) / values.number(focal);
+    const double degrees = fov_of_plane_width(projection, width, d);
+    if (!(plane_width(projection, degrees, d) >= width * (1 - 1e-9)))
+        throw Error(focal, text,
+                    "is too short: " + std::string(name_of(projection)) + " does not show all of " + sensor +
+                        "=" + printable(values.text(sensor)));
+    return degrees;
+}
+
+/// The horizontal field of view that square pixels make of a vertical one. Throws Error where there is none.
+double fov_by_vfov(Projection projection, double vfov, const Size& size, double d, const std::string& name) {
+    const double height = plane_height(projection, vfov, d), width = height / size.height * size.width;
+    // Says what is wrong with it.
+    if (height == 0)
+        static_cast<void>(Chart(projection, size.width, size.height, 0, PixelSpacing::edges,
+                                name.substr(0, name.size() - 4), d, {}, {vfov}));
+    const double degrees = fov_of_plane_width(projection, width, d);
+    if (!(plane_width(projection, degrees, d) >= width * (1 - 1e-9)))
+        throw Error(name, shortest(vfov),
+                    "is too much: " + std::string(name_of(projection)) + " does not show as much across " +
+                        std::to_string(size.width) + "x" + std::to_string(size.height) + " square pixels");
+    return degrees;
+}
+
+/// What the picture covers. `size`: that which is asked for, with a height below 0 where that is not given.
+Field target_field(const ParameterValues& values, Projection to, double d, const Size& size) {
+    const std::optional<double> fov = asked_fov(values, "", to, d);
+    Field field{fov.value_or(Chart::default_fov(to))};
+    if (!is_given(values, "vfov")) {
+        field.aspect = natural_aspect(to, field.fov);
+        return field;
+    }
+    const double vfov = values.number("vfov");
+    if (!fov && !rows_turn(to) && size.height > 0) return {fov_by_vfov(to, vfov, size, d, "vfov")};
+    field.vertical.fov = vfov;
+    field.aspect = plane_height(to, vfov, d) / plane_width(to, field.fov, d);
+    return field;
 }
 
 struct TakenFieldOfView {
@@ -170,17 +258,83 @@ struct TakenFieldOfView {
 /// length, else the projection's.
 TakenFieldOfView source_field_of_view(const ParameterValues& values, const SourceFacts& facts,
                                       Projection projection, PixelSpacing spacing) {
-    if (values.given("srcfov")) return {values.number("srcfov"), ""};
-    if (facts.fov && facts.projection == projection) return {*facts.fov, ""};
+    const double d = values.number("srcd");
+    if (const std::optional<double> asked = asked_fov(values, "src", projection, d)) return {*asked, ""};
+    const bool says = facts.projection == projection;
+    if (facts.fov && says) return {*facts.fov, ""};
     const auto with_reason = [](double degrees, const std::string& reason) {
         return TakenFieldOfView{degrees, ", " + rounded_degrees(degrees) + " degrees " + reason};
     };
+    if (is_given(values, "srcvfov") && !rows_turn(projection))
+        return with_reason(
+            fov_by_vfov(projection, values.number("srcvfov"), {facts.width, facts.height}, d, "srcvfov"),
+            "as srcvfov=" + printable(values.text("srcvfov")) + " says");
     const double standard = Chart::default_fov(projection);
     if (projection != Projection::rectilinear) return {standard, ""};
     if (!facts.focal_length) return with_reason(standard, "assumed");
     return with_reason(
         flat_field_of_view(facts.width - (spacing == PixelSpacing::centers ? 1 : 0), *facts.focal_length),
         "as " + facts.focal_length_said_by + " says");
+}
+
+/// The four integers of at least 0 in a text, with these characters between them.
+std::optional<std::array<int, 4>> numbers_between(std::string_view text, std::string_view separators) {
+    std::array<int, 4> numbers{};
+    const char *at = text.data(), *end = at + text.size();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (i > 0 && (at == end || *at++ != separators[i - 1])) return {};
+        const auto [next, error] = std::from_chars(at, end, numbers[i]);
+        if (error != std::errc() || numbers[i] < 0) return {};
+        at = next;
+    }
+    return at == end ? std::optional(numbers) : std::nullopt;
+}
+
+/// The part of a panorama that the source is: as asked for or as it says itself; none where it is whole.
+std::optional<PanoramaCrop> source_crop(const ParameterValues& values, const SourceFacts& facts,
+                                        Projection from) {
+    if (!is_given(values, "srccrop")) {
+        const bool is_as_said = facts.projection.value_or(from) == from && !values.given("srcfov") &&
+                                !is_given(values, "srcfocal");
+        return is_as_said ? facts.crop : std::nullopt;
+    }
+    const std::string text = values.text("srccrop");
+    const std::optional<std::array<int, 4>> numbers = numbers_between(text, "x++");
+    const PanoramaCrop crop =
+        numbers ? PanoramaCrop{double((*numbers)[0]), double((*numbers)[1]), double((*numbers)[2]),
+                               double((*numbers)[3]), double(facts.width),   double(facts.height)}
+                : PanoramaCrop{};
+    const bool is_inside = numbers && crop.width >= crop.w && crop.width <= kMaxSide &&
+                           crop.height <= kMaxSide && crop.x < crop.width && crop.y + crop.h <= crop.height;
+    if (!is_inside)
+        throw Error("srccrop", printable(text),
+                    "must be WxH+X+Y with the source, " + std::to_string(facts.width) + "x" +
+                        std::to_string(facts.height) + ", inside of WxH");
+    return crop;
+}
+
+/// Where a part of a panorama lies: the chart of `whole` degrees is cut down to it.
+struct CutView {
+    double fov, ahead;
+    VerticalField vertical;
+};
+CutView cut_to(const PanoramaCrop& crop, Projection from, const SourceFacts& facts, double whole,
+               double srcvfov) {
+    if (!rows_turn(from))
+        throw Error("srccrop", std::string(name_of(from)),
+                    "must be of a projection whose columns are meridians: equirectangular, "
+                    "cylindrical or mercator");
+    if (whole != 360 && crop.x + crop.w > crop.width)
+        throw Error("srccrop", shortest(crop.x),
+                    "must not run across the seam of a panorama of " + shortest(whole) + " degrees");
+    CutView cut{whole * crop.w / crop.width, ((crop.x + 0.5 * crop.w) / crop.width - 0.5) * whole, {}};
+    // Units of the plane for a pixel of the whole.
+    const double across = plane_width(from, whole) / crop.width,
+                 down = srcvfov > 0 ? plane_height(from, srcvfov) / crop.height : across;
+    const bool is_square = down == across && facts.height * crop.w == facts.width * crop.h;
+    if (!is_square) cut.vertical.fov = vfov_of_plane_height(from, crop.h * down);
+    cut.vertical.horizon = (0.5 * crop.height - crop.y) * facts.height / crop.h;
+    return cut;
 }
 
 LensModel lens_of(const ParameterValues& values, const std::string& name) {
@@ -199,23 +353,21 @@ std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
 
 Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
-    const double fov = field_of_view(values, "fov", to), d = values.number("d");
+    const double d = values.number("d");
     const LensModel lens = lens_of(values, "lens");
+    Size size = values.given("size") ? values.extent("size") : Size{0, -1};
+    const Field field = target_field(values, to, d, size);
     const auto chart = [&](int width, int height, const LensModel& through) {
-        return Chart(to, width, height, fov, PixelSpacing::edges, "", d, through);
+        return Chart(to, width, height, field.fov, PixelSpacing::edges, "", d, through, field.vertical);
     };
-    // Reports a field of view that the lens cannot have before a size is made of it.
+    // Reports a field of view that the picture cannot have before a size is made of it.
     const int probe = 12;
     static_cast<void>(
-        chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, {}));
-
-    Size size;
-    if (!values.given("size")) {
-        size = default_size(to, fov, d, lens.magnification(), source);
-    } else {
-        size = values.extent("size");
-        if (size.height < 0) size = natural_size(to, fov, size.width);
-    }
+        chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, field.fov)) : probe, {}));
+    if (!values.given("size"))
+        size = default_size(to, field, d, lens.magnification(), source);
+    else if (size.height < 0)
+        size = natural_size(field, size.width);
     return chart(size.width, size.height, lens);
 }
 
@@ -243,12 +395,39 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
     const auto [fov, fov_reason] = source_field_of_view(values, facts, from, spacing);
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    return {Chart(from, facts.width, facts.height, fov, spacing, "src", values.number("srcd"), srclens),
-            reason + fov_reason};
+    const bool has_vfov = is_given(values, "srcvfov");
+    CutView cut{fov, 0, {}};
+    std::string whole;
+    if (const std::optional<PanoramaCrop> crop = source_crop(values, facts, from)) {
+        // Metadata are of panoramas of 180 degrees from top to bottom, where these are the rows' unit.
+        const bool by_metadata = !is_given(values, "srccrop") && from == Projection::equirectangular;
+        const double vfov = has_vfov                                         ? values.number("srcvfov")
+                            : by_metadata && crop->width != 2 * crop->height ? 180
+                                                                             : 0;
+        cut = cut_to(*crop, from, facts, fov, vfov);
+        whole = ", a part of " + shortest(crop->width) + "x" + shortest(crop->height) + " at " +
+                shortest(crop->x) + "," + shortest(crop->y);
+        if (spacing == PixelSpacing::centers)
+            throw Error("pixels", "centers", "must be edges of a part of a panorama");
+    } else if (has_vfov) {
+        // What made the horizontal field of view has square pixels.
+        if (rows_turn(from) || asked_fov(values, "src", from, values.number("srcd")) ||
+            (facts.fov && facts.projection == from))
+            cut.vertical.fov = values.number("srcvfov");
+    } else if (facts.vfov && facts.projection == from && !values.given("srcfov")) {
+        cut.vertical.fov = *facts.vfov;
+    }
+    return {Chart(from, facts.width, facts.height, cut.fov, spacing, "src", values.number("srcd"), srclens,
+                  cut.vertical),
+            reason + fov_reason + whole, cut.ahead};
 }
 
-Orientation read_held(const ParameterValues& values) {
-    return {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")};
+Orientation read_held(const ParameterValues& values, const SourceFacts& facts, const TakenSource& source) {
+    const auto angle = [&](const char* name, const std::optional<double>& said) {
+        return values.given(name) ? values.number(name) : said.value_or(0);
+    };
+    return {angle("srcyaw", facts.yaw), angle("srcpitch", facts.pitch), angle("srcroll", facts.roll),
+            source.ahead};
 }
 
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
@@ -256,9 +435,12 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     ReprojectOptions options = read_reproject_options(values, facts);
     const std::optional<machine::BumpUnit> machine = machine_of(values);
     if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
-    return {
-        source, read_target_chart(values, source.chart), read_orientation(values), read_held(values), options,
-        machine};
+    return {source,
+            read_target_chart(values, source.chart),
+            read_orientation(values),
+            read_held(values, facts, source),
+            options,
+            machine};
 }
 
 std::optional<Chart> half_size(const Chart& chart) {

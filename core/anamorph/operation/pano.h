@@ -19,6 +19,7 @@ struct TakenSource {
     Chart chart;
     std::string
         reason;  ///< why it is taken for this: "given", "assumed from the 2:1 shape", "given, 90 degrees assumed" ...
+    double ahead = 0;  ///< Orientation::ahead of a part of a panorama
 
     /// The source and the reason as an attribute of the picture.
     Attribute says() const;
@@ -53,7 +54,7 @@ inline constexpr int kMaxDefaultSize = 16384;
 /// fov, d, lens, size), where its camera looks (yaw, pitch, roll), and all options (tol, filter, wrap,
 /// output) but the scheme. Throw Error.
 TakenSource read_source(const ParameterValues& values, const SourceFacts& source);
-Orientation read_held(const ParameterValues& values);
+Orientation read_held(const ParameterValues& values, const SourceFacts& facts, const TakenSource& source);
 Chart read_target_chart(const ParameterValues& values, const Chart& source);
 Orientation read_orientation(const ParameterValues& values);
 ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source);

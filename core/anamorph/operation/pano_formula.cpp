@@ -118,7 +118,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
     options.scheme = rows::chosen<Scheme>(values, "scheme");
     const FlatRequest request{source.chart, size,           plan_options(options), options.filter,
                               options.wrap, options.output, saying(source.says())};
-    const Orientation look = read_orientation(values), held = read_held(values);
+    const Orientation look = read_orientation(values), held = read_held(values, facts, source);
     return flat_pictures(
         request, [formula = formula_of(text, setting), request, look, held](const Size& pixels) {
             return formula.plan(request.source, request.target, pixels, look, held, request.plan);
@@ -126,7 +126,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
 }
 
 void refuse_what_formulas_have_not(const ParameterValues& values) {
-    for (const char* name : {"fov", "d", "lens"})
+    for (const char* name : {"fov", "vfov", "focal", "sensor", "d", "lens"})
         if (values.given(name))
             throw Error(name, printable(values.text(name)),
                         "is of other projections than to=formula: must not be given");

@@ -8,6 +8,7 @@ namespace anamorph {
 Attributes panorama_attributes(const Chart& picture, bool color) {
     Attributes says;
     std::string projection = std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov());
+    if (picture.vertical().fov != 0) projection += " vfov=" + shortest(picture.vertical().fov);
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;
@@ -18,7 +19,8 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     };
     if (picture.projection() == Projection::cubemap) environment("CubeFace Environment");
     // A whole turn, and as much of the poles as whole rows can say.
-    const bool turn = picture.projection() == Projection::equirectangular && picture.fov() == 360;
+    const bool turn = picture.projection() == Projection::equirectangular && picture.fov() == 360 &&
+                      picture.vertical().fov == 0;
     if (turn && w % 2 == 0 && h <= whole && (whole - h) % 2 == 0) {
         says.push_back({"GPano:ProjectionType", "equirectangular"});
         for (const auto& [name, value] : {std::pair{"FullPanoWidthPixels", w},

@@ -51,20 +51,26 @@ Turn turn_of(const Orientation& orientation) {
              {product(y.sin * p.cos), product(-p.sin), product(y.cos * p.cos)}}};
 }
 
+double error_of(const Constant& constant) {
+    return constant.as<Rounded<long double>>().error;
+}
+
 /// The inverse of the one times the other, by columns: dot products of their columns. Sums of three products are off by
-/// 3 units of each in long double; the entries are off by 33 units at most each.
+/// 3 units of each in long double, and by what the entries are off, of which products of two are next to nothing.
 Turn relative(const Turn& held, const Turn& look) {
     Turn turn;
     for (std::size_t column = 0; column < 3; ++column)
         for (std::size_t row = 0; row < 3; ++row) {
-            long double sum = 0, size = 0;
+            long double sum = 0, size = 0, off = 0;
             for (std::size_t i = 0; i < 3; ++i) {
-                const long double product = held[row][i].precise() * look[column][i].precise();
+                const Constant &a = held[row][i], &b = look[column][i];
+                const long double product = a.precise() * b.precise();
                 sum += product;
                 size += std::fabs(product);
+                off += std::fabs(a.precise()) * error_of(b) + std::fabs(b.precise()) * error_of(a);
             }
             // An entry that is known no better than that it is small.
-            const double error = static_cast<double>(size) * 72 * Rounded<long double>::kUnit;
+            const double error = static_cast<double>(off + size * 6 * Rounded<long double>::kUnit);
             turn[column][row] = Constant(sum == 0 && size > 0 ? error * 0x1p-20L : sum, 2 * error);
         }
     return turn;
@@ -90,12 +96,14 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
     : m_source(source), m_target(target) {
     const std::pair<const char*, double> angles[] = {{"yaw", orientation.yaw},   {"pitch", orientation.pitch},
                                                      {"roll", orientation.roll}, {"srcyaw", held.yaw},
-                                                     {"srcpitch", held.pitch},   {"srcroll", held.roll}};
+                                                     {"srcpitch", held.pitch},   {"srcroll", held.roll},
+                                                     {"srccrop", held.ahead}};
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "must be a finite angle in degrees");
     m_turn = turn_of(orientation);
     if (held.yaw != 0 || held.pitch != 0 || held.roll != 0) m_turn = relative(turn_of(held), m_turn);
+    if (held.ahead != 0) m_turn = relative(turn_of({held.ahead}), m_turn);
     m_rotation = matrix_of(m_turn);
 }
 

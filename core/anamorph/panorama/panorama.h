@@ -16,6 +16,8 @@ namespace anamorph {
 /// pitched, then turned. With R its rotation, world ray = R * ray of the camera.
 struct Orientation {
     double yaw = 0, pitch = 0, roll = 0;
+    /// A turn to the right before all others: where a part of a panorama has its middle in the whole one. Of sources alone.
+    double ahead = 0;
 };
 
 /// The rotation R of an orientation, between frames with x right, y down, z forward.

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Panoramas as cameras and stitchers write them: parts of a whole, turned and tilted, with pixels that are not square; and views
+// by focal length or by their height.
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageBuf;
+using testing::HasSubstr;
+
+constexpr int kWide = 320, kHigh = 160;
+
+std::string says(const std::string& name, const char* attribute) {
+    const auto input = open(name);
+    return input ? std::string(input->spec().get_string_attribute(attribute)) : "";
+}
+
+double mean_difference(const std::vector<float>& a, const std::vector<float>& b) {
+    EXPECT_EQ(a.size(), b.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) sum += std::fabs(a[i] - b[i]);
+    return sum / static_cast<double>(a.size());
+}
+
+class Cameras : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("whole.exr", kWide, kHigh);
+    }
+
+    /// Writes a part of the whole that begins at x, y, perhaps across the seam, and returns its pixels.
+    static ImageBuf part(int x, int y, int width, int height) {
+        ImageBuf whole("whole.exr"), cut(OIIO::ImageSpec(width, height, 3, OIIO::TypeFloat));
+        for (int j = 0; j < height; ++j)
+            for (int i = 0; i < width; ++i) {
+                float pixel[3];
+                whole.getpixel((x + i) % kWide, y + j, pixel);
+                cut.setpixel(i, j, pixel);
+            }
+        return cut;
+    }
+    static void say_part(ImageBuf& image, int x, int y, int width, int height) {
+        OIIO::ImageSpec& spec = image.specmod();
+        spec.attribute("GPano:ProjectionType", "equirectangular");
+        spec.attribute("GPano:FullPanoWidthPixels", kWide);
+        spec.attribute("GPano:FullPanoHeightPixels", kHigh);
+        spec.attribute("GPano:CroppedAreaLeftPixels", x);
+        spec.attribute("GPano:CroppedAreaTopPixels", y);
+        spec.attribute("GPano:CroppedAreaImageWidthPixels", width);
+        spec.attribute("GPano:CroppedAreaImageHeightPixels", height);
+    }
+};
+
+const char* const kView = "&to=rectilinear&fov=40&size=80x60";
+
+// A part shows what the whole shows there, wherever it lies: in the middle, near a pole, across the seam.
+TEST_F(Cameras, PartsOfPanoramasLieWhereTheyBelong) {
+    const struct {
+        int x, y, width, height;
+        const char* look;
+    } cases[] = {{100, 40, 120, 80, "&yaw=0&pitch=0"},   {20, 30, 100, 90, "&yaw=-100&pitch=10&roll=20"},
+                 {250, 30, 140, 90, "&yaw=179&pitch=5"}, {90, 0, 140, 90, "&yaw=5&pitch=62"},
+                 {90, 70, 140, 90, "&yaw=5&pitch=-62"},  {0, 40, 320, 80, "&yaw=-170&pitch=-10"}};
+    for (const auto& c : cases) {
+        SCOPED_TRACE(std::string(c.look) + " from " + std::to_string(c.x));
+        ImageBuf image = part(c.x, c.y, c.width, c.height);
+        write_image(image, "keys.exr");
+        say_part(image, c.x, c.y, c.width, c.height);
+        write_image(image, "tags.exr");
+        const std::string look = kView + std::string(c.look) + "&tol=0.00001",
+                          crop = "&srccrop=320x160+" + std::to_string(c.x) + "+" + std::to_string(c.y);
+        const std::vector<float> whole = read_floats("whole.exr.pano?from=latlong" + look),
+                                 by_tags = read_floats("tags.exr.pano?filter=antialias" + look),
+                                 by_keys = read_floats("keys.exr.pano?from=latlong" + crop + look);
+        EXPECT_LT(largest_difference(by_tags, whole), 2e-4);
+        EXPECT_LT(largest_difference(by_keys, whole), 2e-4);
+    }
+    EXPECT_EQ(says("tags.exr.pano?size=8", "anamorph:from"),
+              "equirectangular (as GPano:ProjectionType says, a part of 320x160 at 0,40)");
+}
+
+// Tags are of the picture as it was taken; a copy of half the size has the same.
+TEST_F(Cameras, ResizedPartsKeepTheirPlace) {
+    ImageBuf image = part(60, 40, 160, 80);
+    say_part(image, 60, 40, 160, 80);
+    write_image(image, "part.exr");
+    ASSERT_EQ(run("oiiotool part.exr --resize 80x40 -o half.exr").status, 0);
+    ASSERT_EQ(run("oiiotool part.exr --resize 80x80 -o narrow.exr").status, 0);
+    const std::string view =
+        "&to=rectilinear&fov=40&size=40x30&yaw=-20&filter=bilinear&tol=0.0001&output=stmap";
+    const std::vector<float> places = read_floats("part.exr.pano?srcyaw=0" + view);
+    EXPECT_LT(largest_difference(read_floats("half.exr.pano?srcyaw=0" + view), places), 1e-5);
+    EXPECT_LT(largest_difference(read_floats("narrow.exr.pano?srcyaw=0" + view), places), 1e-5);
+    // Other sizes and projections that are asked for are those of the picture as it stands.
+    EXPECT_GT(largest_difference(read_floats("part.exr.pano?srcfov=180" + view), places), 1e-2);
+}
+
+TEST_F(Cameras, PosesAreTheSourcesAngles) {
+    ImageBuf image = part(0, 0, kWide, kHigh);
+    image.specmod().attribute("GPano:ProjectionType", "equirectangular");
+    image.specmod().attribute("GPano:PoseHeadingDegrees", 30.0f);
+    image.specmod().attribute("GPano:PosePitchDegrees", -7.5f);
+    image.specmod().attribute("GPano:PoseRollDegrees", 12);
+    write_image(image, "posed.exr");
+    EXPECT_TRUE(read_floats("posed.exr.pano?fov=60&size=50x40") ==
+                read_floats("whole.exr.pano?fov=60&size=50x40&srcyaw=30&srcpitch=-7.5&srcroll=12"));
+    EXPECT_TRUE(read_floats("posed.exr.pano?fov=60&size=50x40&srcyaw=0&srcroll=3") ==
+                read_floats("whole.exr.pano?fov=60&size=50x40&srcpitch=-7.5&srcroll=3"));
+    // A part that was tilted: the tilt is that of the whole.
+    ImageBuf tilted = part(40, 30, 160, 100);
+    say_part(tilted, 40, 30, 160, 100);
+    tilted.specmod().attribute("GPano:PosePitchDegrees", 20.0f);
+    write_image(tilted, "tilted.exr");
+    const std::string view = "&fov=30&size=50x40&yaw=-50&pitch=25&tol=0.00001";
+    EXPECT_LT(largest_difference(read_floats("tilted.exr.pano?pixels=edges" + view),
+                                 read_floats("whole.exr.pano?srcpitch=20" + view)),
+              2e-4);
+}
+
+// A whole sphere squeezed into a square, and back.
+TEST_F(Cameras, PixelsNeedNotBeSquare) {
+    ASSERT_EQ(run("oiiotool whole.exr --resize:filter=box 160x160 -o squeezed.exr").status, 0);
+    const std::string look = "&fov=70&size=90x70&yaw=150&pitch=50&filter=bilinear";
+    EXPECT_LT(mean_difference(read_floats("squeezed.exr.pano?from=latlong&srcvfov=180" + look),
+                              read_floats("whole.exr.pano?from=latlong" + look)),
+              0.02);
+    // What is drawn so says so, and is read so.
+    const std::string square = "whole.exr.pano?to=latlong&vfov=180&size=160x160";
+    EXPECT_EQ(says(square, "panoramaProjection"), "equirectangular fov=360 vfov=180");
+    ASSERT_EQ(run("oiiotool '" + square + "' -o square.exr").status, 0);
+    EXPECT_LT(mean_difference(read_floats("square.exr.pano?wrap=automatic" + look),
+                              read_floats("whole.exr.pano?from=latlong" + look)),
+              0.02);
+    // Where things stand is no matter of sampling.
+    const std::vector<float> uv = read_floats("squeezed.exr.pano?from=latlong&srcvfov=180&output=stmap" +
+                                              look),
+                             whole = read_floats("whole.exr.pano?from=latlong&output=stmap" + look);
+    EXPECT_LT(largest_difference(uv, whole), 2e-4);
+}
+
+TEST_F(Cameras, ViewsByHeightAndByFocalLength) {
+    const auto same = [](const std::string& a, const std::string& b) {
+        SCOPED_TRACE(a + " and " + b);
+        const std::string keys = "whole.exr.pano?yaw=20&pitch=10&output=stmap&tol=0.00001";
+        EXPECT_LT(largest_difference(read_floats(keys + a), read_floats(keys + b)), 2e-6);
+    };
+    const auto degrees = [](double radians) { return std::to_string(radians * 180 / std::numbers::pi); };
+    // 90 by 60 square pixels: tangents are to each other as sides.
+    same("&vfov=40&size=90x60",
+         "&size=90x60&fov=" + degrees(2 * std::atan(1.5 * std::tan(20 * std::numbers::pi / 180))));
+    same("&to=fisheye&vfov=100&size=90x60", "&to=fisheye&fov=150&size=90x60");
+    same("&to=latlong&vfov=90&size=160", "&to=latlong&size=160x40");
+    // A plane 2 high and 3 wide, in radians, of square pixels.
+    same("&to=cylindrical&vfov=90&size=90x60&fov=" + degrees(3),
+         "&to=cylindrical&size=90x60&fov=" + degrees(3));
+    same("&focal=24&size=90x60", "&size=90x60&fov=" + degrees(2 * std::atan(18.0 / 24)));
+    same("&focal=4&sensor=5.6&size=90x60", "&size=90x60&fov=" + degrees(2 * std::atan(0.7)));
+    same("&to=fisheye&focal=8&sensor=20&size=60", "&to=fisheye&size=60&fov=" + degrees(2.5));
+    same("&to=equisolid&focal=8&sensor=20&size=60",
+         "&to=equisolid&size=60&fov=" + degrees(4 * std::asin(20.0 / 32)));
+    const std::string photo = "whole.exr.pano?from=rectilinear&fov=50&size=40x30&output=stmap";
+    EXPECT_LT(largest_difference(read_floats(photo + "&srcfocal=28"),
+                                 read_floats(photo + "&srcfov=" + degrees(2 * std::atan(18.0 / 28)))),
+              2e-6);
+    EXPECT_LT(
+        largest_difference(read_floats(photo + "&srcvfov=40"),
+                           read_floats(photo + "&srcfov=" +
+                                       degrees(2 * std::atan(2 * std::tan(20 * std::numbers::pi / 180))))),
+        2e-6);
+}
+
+TEST_F(Cameras, SayWhatIsWrong) {
+    const struct {
+        const char *keys, *message;
+    } cases[] = {
+        {"focal=24&fov=60", "focal=24: must not be given together with fov"},
+        {"sensor=24", "sensor=24: must be given together with focal"},
+        {"focal=0", "focal=0: must be"},
+        {"focal=nan", "focal=nan: must be"},
+        {"to=orthographic&focal=8", "focal=8: is too short"},
+        {"to=cubemap&focal=24", "focal=24: must be of a picture in one piece"},
+        {"vfov=180", "vfov=180: must be above 0 and below 180 degrees for rectilinear"},
+        {"to=latlong&vfov=181", "vfov=181: must be above 0 and up to 180 degrees for equirectangular"},
+        {"to=cylindrical&vfov=180", "vfov=180: must be above 0 and below 180 degrees for cylindrical"},
+        {"to=mercator&vfov=180&fov=360", "vfov=180: must be above 0 and below 180 degrees for mercator"},
+        {"to=cubemap&vfov=90", "vfov=90: cubemap has none but its own"},
+        {"to=orthographic&vfov=170&size=90x30", "vfov=170: is too much"},
+        {"to=formula&vfov=90", "vfov=90: is of other projections"},
+        {"srcvfov=200", "srcvfov=200: must be"},
+        {"srccrop=320x160", "srccrop=320x160: must be WxH+X+Y"},
+        {"srccrop=320x160+1+1", "srccrop=320x160+1+1: must be WxH+X+Y with the source, 320x160, inside"},
+        {"srccrop=99999999999x9+0+0", "must be WxH+X+Y"},
+        {"srccrop=640x320+700+0", "must be WxH+X+Y"},
+        {"srccrop=640x320+0+0&from=fisheye",
+         "srccrop=fisheye: must be of a projection whose columns are meridians"},
+        {"srcfov=180&srccrop=640x320+500+0", "must not run across the seam"},
+        {"pixels=centers&srccrop=640x320+0+0", "pixels=centers: must be edges"},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.keys);
+        const std::string keys = c.keys;
+        const std::string more = std::string(keys.find("from=") == std::string::npos ? "from=latlong&" : "") +
+                                 (keys.find("size=") == std::string::npos ? "size=60&" : "");
+        EXPECT_THAT(open_error("v.pano?src=whole.exr&" + more + keys), HasSubstr(c.message));
+    }
+    // Tags that cannot be are none.
+    ImageBuf image = part(0, 0, 160, 80);
+    say_part(image, 10, 100, 160, 80);
+    write_image(image, "wrong.exr");
+    EXPECT_EQ(says("wrong.exr.pano?size=8", "anamorph:from"),
+              "equirectangular (as GPano:ProjectionType says)");
+}
+
+TEST_F(Cameras, AreOnePicture) {
+    write_image(part(250, 30, 140, 90), "part.exr");
+    expect_one_picture(
+        "part.exr.pano?from=latlong&srccrop=320x160+250+30&yaw=170&pitch=20&fov=110&size=160x120", 50, 40);
+}
+
+}  // namespace
+}  // namespace anamorph
