@@ -24,6 +24,7 @@ struct JoinSource {
     bool stored = false;  ///< are their pixels those that are stored, of any types?
     std::string key;      ///< where it is the same, the picture and its sources are
     std::string chain;    ///< "pano", or what was joined: "pano of lens"
+    float tol = 0;        ///< that of all that was joined
 };
 
 /// The pixels and headers that an input shows. Thread safe.

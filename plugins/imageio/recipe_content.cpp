@@ -223,7 +223,8 @@ class RecipeContent final : public Content {
                           m_space,
                           m_stored,
                           l.key,
-                          m_chain};
+                          m_said_of_chain.empty() ? m_chain : m_said_of_chain,
+                          l.header.get_float_attribute("anamorph:tol")};
     }
 
   private:
@@ -371,6 +372,9 @@ class RecipeContent final : public Content {
             made.header = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored);
             if (!m_part.empty()) say_part(made.header);
             if (!m_said_of_chain.empty()) made.header.attribute("anamorph:chain", m_said_of_chain);
+            if (m_joined)
+                made.header.attribute(
+                    "anamorph:tol", std::min(m_joined->tol, made.header.get_float_attribute("anamorph:tol")));
             const bool tiled = m_tile.width > 0 && m_tile.height > 0;
             made.header.tile_width = tiled ? m_tile.width : 0;
             made.header.tile_height = tiled ? m_tile.height : 0;

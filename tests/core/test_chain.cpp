@@ -150,10 +150,7 @@ TruePoint true_point(const std::vector<Link>& links, Point<Real> p, const Point<
         if (i + 1 == links.size()) break;
         const Size size = links[i + 1].size();
         p = {p.x + origin.x, p.y + origin.y};
-        if (links[i].closes) {
-            p.x -= std::floor(p.x / size.width) * size.width;
-            continue;
-        }
+        if (links[i].closes) p.x -= std::floor(p.x / size.width) * size.width;
         const Real out = std::max({-p.x, p.x - size.width, -p.y, p.y - size.height});
         found.is_open |= std::fabs(out) < kEdge;
         if (out > 0) return {{kNone, kNone}, found.is_open};
@@ -259,11 +256,18 @@ std::vector<ChainCase> chain_cases() {
                  pano_link(view(Projection::fisheye, {400, 400}, 190), sphere, {0, 70, 10}, s)};
          },
          0.6},
+        {"pano of a cylinder, beyond its edges",
+         [=](const Settings& s) {
+             const View cylinder = view(Projection::cylindrical, {500, 160}, 360);
+             return std::vector{pano_link(cylinder, flat({200, 200}, 90), {170, 30, 10}, s),
+                                pano_link(sphere, cylinder, {10, 20, 5}, s)};
+         }},
         {"twirl of lens that ends",
          [=](const Settings& s) {
              return std::vector{twirl_link(plate, s),
                                 lens_link("ptlens:b=-0.45", LensMode::undistort, plate, plate, s)};
-         }},
+         },
+         0.8},
         {"sphere of twirled plane",
          [=](const Settings& s) {
              return std::vector{pano_link(flat({300, 300}, 100),
@@ -393,6 +397,14 @@ TEST(Chain, SaysWhyItDoesNotJoin) {
     EXPECT_EQ(reason(dense.picture, lens.picture), "it has a map or a scheme that does not join");
     const Link cube = pano_link(view(Projection::cubemap, {40, 240}, 90), flat(plate, 60), {}, settings);
     EXPECT_EQ(reason(cube.picture, lens.picture), "its source has faces");
+    // What closes on itself is read across its seam, beyond which a flat source has nothing.
+    const Size whole{320, 160};
+    const Link twirl = twirl_link(whole, settings);
+    const Link sphere =
+        pano_link(view(Projection::equirectangular, whole, 360), flat({100, 80}, 60), {}, settings);
+    const Joined across = joined_picture(sphere.picture, twirl.picture, {0, 0, 320, 160});
+    EXPECT_FALSE(across.picture);
+    EXPECT_EQ(across.reason, "its source closes on itself, but not what that is drawn from");
 }
 
 }  // namespace

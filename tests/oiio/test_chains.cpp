@@ -57,6 +57,9 @@ TEST_F(Chains, SayWhatWasJoined) {
     EXPECT_EQ(chain_of("v.map?u=x+0.5&src=(" + m_warp + ")"), "map of warp of pano of lens");
     EXPECT_EQ(chain_of("v.drape?src=(" + m_warp + ")"),
               "drape of a picture that is drawn first: drape does not join");
+    // Of a chain below a picture that is drawn first the rest is said too.
+    EXPECT_EQ(chain_of("v.map?u=x+1&src=(w.warp?mesh=grid.json&concatenate=0&src=(" + m_lens + "))"),
+              "map of warp of a picture that is drawn first: concatenate=0");
     // A picture that is drawn first may itself be a chain.
     EXPECT_EQ(chain_of("v.lens?lens=3de4:k1=0.1&concatenate=0&src=(" + m_pano + ")"),
               "lens of a picture that is drawn first: concatenate=0");
@@ -71,6 +74,13 @@ TEST_F(Chains, AreThePictureThatTheyWouldBeWithoutLosses) {
         EXPECT_LT(sum / static_cast<double>(joined.size()), 0.02);
         EXPECT_GT(sum, 0);
     }
+}
+
+TEST_F(Chains, SayTheToleranceThatHolds) {
+    const auto input = open("v.map?u=x&tol=0.5&src=(" + m_lens + "&tol=0.001)");
+    ASSERT_TRUE(input);
+    EXPECT_FLOAT_EQ(input->spec().get_float_attribute("anamorph:tol"), 0.001f);
+    EXPECT_LE(input->spec().get_float_attribute("anamorph:max_error"), 0.001f);
 }
 
 // The numbers are those of a chain of formulas written as one.
@@ -129,6 +139,10 @@ TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
          "it has a map or a scheme that does not join"},
         {"v.pano?from=rectilinear", "plate.exr.map?u=x&v=y&direction=push",
          "its source is inverted point by point"},
+        {"v.pano?from=rectilinear", "p.map?v=y&direction=push&src=(q.map?u=x+1&src=plate.exr)",
+         "its source is inverted point by point"},
+        {"v.pano?from=equirectangular&yaw=180", "plate.exr.map?v=y+1&size=200x100",
+         "its source closes on itself, but not what that is drawn from"},
         {"v.pano?from=rectilinear", "plate.exr.warp?mesh=dense.json",
          "its source has a map or a scheme that does not join"},
         {"v.pano?from=rectilinear", "plate.exr.drape?", "its source is no picture of maps"},

@@ -17,11 +17,13 @@ lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
 oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
 oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
 cp plate.exr taken.exr
+oiiotool panorama.exr --cut 300x150+60+40 -o part.exr
+oiiotool panorama.exr --resize 256x256 -o square.exr
 oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
 oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 "$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 54 ]
+[ "$(wc -l <one_liners.sh)" -eq 57 ]
 if ! command -v ffmpeg >/dev/null; then
     sed -i '/^ffmpeg /d' one_liners.sh
 fi
@@ -59,6 +61,9 @@ iinfo map.exr | tr -d ' ' | grep ":2048x1556,2channel"
 idiff -fail 0.02 -failpercent 1 -hardfail 20 -warn 20 plate.exr taken.exr  # the sun is 490
 [ "$(ls film.*.jpg | wc -l)" -eq 25 ]
 [ "$(ls step.*.jpg | wc -l)" -eq 5 ]
+oiiotool --info -v bent.exr | grep "anamorph:chain: \"warp of pano of lens\""
+oiiotool --info -v of_part.exr | grep "a part of 8000x4000 at 1200,900"
+[ -s of_square.exr ]
 # The film's ends are the pictures, but for what JPEG loses by writing them again.
 idiff -fail 0.05 -failpercent 1 -hardfail 0.3 -warn 1 film.0000.jpg round.png
 idiff -fail 0.05 -failpercent 1 -hardfail 0.3 -warn 1 film.0024.jpg long.png

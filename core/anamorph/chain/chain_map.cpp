@@ -32,15 +32,15 @@ Interval part_of(const Interval& a, double lo, double hi) {
 }  // namespace
 
 ChainMap::ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const MapLink> inner,
-                   const Point<double>& origin)
+                   const MiddlePicture& middle)
     : m_outer(std::move(outer)),
       m_inner(std::move(inner)),
-      m_origin(origin),
+      m_middle(middle),
       m_pieces(m_inner->target_pieces()) {}
 
 Point<double> ChainMap::shift_about(double x) const {
     const int period = m_outer->source_period();
-    if (period == 0) return m_origin;
+    if (period == 0) return m_middle.origin;
     return {-std::floor(x / period) * period, 0};
 }
 
@@ -57,8 +57,10 @@ int ChainMap::piece_of(const Point<Interval>& box) const {
 }
 
 bool ChainMap::misses(const Point<Interval>& box) const {
+    const bool closes = m_outer->source_period() > 0;
     return std::all_of(m_pieces.begin(), m_pieces.end(), [&](const Box& piece) {
-        return box.x.hi < piece.x0 || box.x.lo > piece.x1 || box.y.hi < piece.y0 || box.y.lo > piece.y1;
+        return (!closes && (box.x.hi < piece.x0 || box.x.lo > piece.x1)) || box.y.hi < piece.y0 ||
+               box.y.lo > piece.y1;
     });
 }
 
@@ -81,7 +83,7 @@ Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Loc
     const Cover outer = m_outer->cover(x, y, piece, local.outer, /*across_seam=*/true);
     if (outer != Cover::inside) return outer == Cover::outside ? Cover::outside : Cover::mixed;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
-    if (m_outer->source_period() == 0 && misses(at)) return Cover::outside;
+    if (misses(at)) return Cover::outside;
     if (!local.inner || piece_of(at) != local.piece) return Cover::mixed;
     const Cover inner = m_inner->cover(at.x, at.y, local.piece, local.inner, across_seam);
     return inner == Cover::partial ? Cover::mixed : inner;
@@ -109,9 +111,9 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
     points = {widened(points.x, error), widened(points.y, error)};
 
     const int period = m_outer->source_period();
-    if (period == 0) return error_from(in_middle(points, m_origin), error, in_long_double);
+    if (period == 0) return error_from(in_middle(points, m_middle.origin), error, in_long_double);
     points = in_middle(points, shift_about(middle_of(points.x)));
-    points.y = part_of(points.y, 0, m_inner->target_size().height);
+    if (m_middle.has_poles) points.y = part_of(points.y, 0, m_inner->target_size().height);
     if (is_within(points.x, 0, period)) return error_from(points, error, in_long_double);
     // Across the seam the computed point may lie at one end and the true one at the other: no matter where the inner map
     // goes on there.

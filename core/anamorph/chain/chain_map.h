@@ -18,6 +18,13 @@
 
 namespace anamorph {
 
+/// The picture in the middle, as the outer map sees it.
+struct MiddlePicture {
+    /// The pixel at which the outer map's coordinates begin: the corner of the display window, where that is not the data window.
+    Point<double> origin{0, 0};
+    bool has_poles = false;  ///< are its first and last row the poles, so that there is nothing beyond them?
+};
+
 class ChainMap {
   public:
     /// Exact pixels cost most: they go from map to map one by one, where single maps have them in vectors.
@@ -29,10 +36,9 @@ class ChainMap {
                                       .rounding = 6,
                                       .double_pixel = 0.02};
 
-    /// The source of `outer` is what `inner` draws, and `origin` where the outer one's coordinates begin in that: at the display
-    /// window, where it is another than the data window. A source that closes on itself is as wide as what is drawn.
+    /// The source of `outer` is what `inner` draws. One that closes on itself is as wide as that.
     ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const MapLink> inner,
-             const Point<double>& origin);
+             const MiddlePicture& middle);
 
     // The members that make this a FormulaMap (plan/formula_map.h).
 
@@ -52,6 +58,7 @@ class ChainMap {
     }
     int period() const { return m_inner->source_period(); }
     int target_period() const { return m_outer->target_period(); }
+    bool reads_computed_points() const { return m_outer->reads_computed_points(); }
     Local local_around(double x, double y, int piece) const;
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
 
@@ -82,20 +89,20 @@ class ChainMap {
         return {p.x + T(shift.x), p.y + T(shift.y)};
     }
     /// A point that the outer map computed in the picture in the middle: where that closes on itself, within it, whatever the
-    /// turn and the rounding at the poles.
+    /// turn, and at poles whatever the rounding.
     template <class Real>
     Point<Real> taken_back(const Point<Real>& p) const {
-        const Size size = m_inner->target_size();
-        if (const int period = m_outer->source_period(); period > 0)
-            return {p.x - std::floor(p.x / period) * period, std::clamp<Real>(p.y, 0, size.height)};
-        return {p.x + m_origin.x, p.y + m_origin.y};
+        const int period = m_outer->source_period();
+        if (period == 0) return {p.x + m_middle.origin.x, p.y + m_middle.origin.y};
+        const Real y = m_middle.has_poles ? std::clamp<Real>(p.y, 0, m_inner->target_size().height) : p.y;
+        return {p.x - std::floor(p.x / period) * period, y};
     }
     /// The shift into the picture in the middle of the outer map's points near x.
     Point<double> shift_about(double x) const;
     /// The piece of the picture in the middle that holds a point, or a box; -1 where there is none.
     int piece_at(double x, double y) const;
     int piece_of(const Point<Interval>& box) const;
-    /// Is all of a box outside of the picture in the middle?
+    /// Is all of a box outside of the picture in the middle, which may close across?
     bool misses(const Point<Interval>& box) const;
 
     double exact_error(const Interval& x, const Interval& y, int piece, double off,
@@ -104,7 +111,7 @@ class ChainMap {
     double error_from(const Point<Interval>& box, double off, bool in_long_double) const;
 
     std::shared_ptr<const MapLink> m_outer, m_inner;
-    Point<double> m_origin;
+    MiddlePicture m_middle;
     std::vector<Box> m_pieces;  ///< of the picture in the middle
 };
 

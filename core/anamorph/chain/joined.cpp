@@ -28,7 +28,7 @@ const Border& border_of(const Picture& picture) {
 }
 
 /// The reason why a picture cannot go on with what another one draws; empty where it can.
-std::string mismatch(const Picture& outer, const Picture& inner, const Box& shown) {
+std::string mismatch(const Picture& outer, const Picture& inner, const MapLink& to, const Box& shown) {
     const Border& border = border_of(outer);
     const Chart& chart = border.chart();
     if (outer.filter != inner.filter) return "the filters differ";
@@ -39,6 +39,9 @@ std::string mismatch(const Picture& outer, const Picture& inner, const Box& show
     const bool is_whole = shown == Box{0, 0, inner.width(), inner.height()};
     if (chart.closed() && (!is_whole || chart.period() != inner.width()))
         return "its source closes on itself, but not at its edges";
+    // Read by itself it would go on across its seam, which its own source need not do.
+    if (chart.closed() && to.target_period() != chart.period())
+        return "its source closes on itself, but not what that is drawn from";
     return "";
 }
 
@@ -59,9 +62,11 @@ Joined joined_picture(const Picture& outer, const Picture& inner, const Box& sho
     const std::shared_ptr<const MapLink> to = link_of(inner, reason);
     if (!to || !to->reads_computed_points())
         return {{}, "its source " + (to ? "is inverted point by point" : reason)};
-    if (reason = mismatch(outer, inner, shown); !reason.empty()) return {{}, reason};
+    if (reason = mismatch(outer, inner, *to, shown); !reason.empty()) return {{}, reason};
 
-    const ChainMap map(from, to, Point<double>{double(shown.x0), double(shown.y0)});
+    const Chart& chart = border_of(outer).chart();
+    const ChainMap map(from, to,
+                       {{double(shown.x0), double(shown.y0)}, chart.closed() && chart.reaches_poles()});
     Picture picture = outer;
     picture.maps[0].blocks =
         std::make_shared<const ChainPlan>(map, options_of(outer, from->options(), to->options()));

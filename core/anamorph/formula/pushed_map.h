@@ -28,8 +28,6 @@ namespace anamorph {
 /// The inverse of a formula that pushes. Pixels, x right, y down, pixel centres at + 0.5.
 class PushedMap {
   public:
-    /// Roots are known about pixels (plan/map_link.h).
-    static constexpr bool kReadsComputedPoints = false;
     /// Source points cost most: a chord is the formula once, and takes some twelve of them.
     static constexpr PlanCosts kCosts{.bound = 60,
                                       .further_bound = 4,
@@ -68,6 +66,8 @@ class PushedMap {
     SourceEdges source_edges() const { return {}; }
     int source_piece(const Local&) const { return 0; }
     int period() const { return 0; }
+    /// Roots are known about pixels (plan/map_link.h).
+    static bool reads_computed_points() { return false; }
     Local local_around(double x, double y, int piece) const;
 
     Point<double> operator()(double x, double y, const Local& local) const;

@@ -89,17 +89,17 @@ std::int64_t FormulaView::undefined_pixels(const Box& box) const {
 }
 
 template <class Real>
-double FormulaView::exact_error(const Interval& x, const Interval& y, int) const {
+double FormulaView::exact_error(const Interval& x, const Interval& y, int, double off) const {
     using R = Rounded<Real>;
-    const R px(x, 0, 0), py(y, 0, 0), there = domain(px, py);
+    const R px(x, 0, off), py(y, 0, off), there = domain(px, py);
     if (there.range.hi + there.error <= 0) return 0;
     if (!(lower_end(there) > 0)) return HUGE_VAL;
     const Ray<R> r = ray(px, py);
     if (is_none(r)) return 0;
     return may_be_none(r) ? HUGE_VAL : m_view.exact_error(turned(r));
 }
-template double FormulaView::exact_error<double>(const Interval&, const Interval&, int) const;
-template double FormulaView::exact_error<long double>(const Interval&, const Interval&, int) const;
+template double FormulaView::exact_error<double>(const Interval&, const Interval&, int, double) const;
+template double FormulaView::exact_error<long double>(const Interval&, const Interval&, int, double) const;
 
 void FormulaView::exact_row(double x, double y, int count, double* to_x, double* to_y,
                             std::int32_t* piece) const {

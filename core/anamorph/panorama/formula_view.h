@@ -47,7 +47,7 @@ class FormulaView {
         return has_length(r) && m_view.exact(turned(r), source_point, source_piece);
     }
     template <class Real>
-    double exact_error(const Interval& x, const Interval& y, int piece) const;
+    double exact_error(const Interval& x, const Interval& y, int piece, double off = 0) const;
 
     /// Finds the source points of the points (x + i, y) as exact() does, within the same bound. `piece` is -1
     /// where there is no source point.

@@ -13,7 +13,6 @@ class InverseView {
   public:
     /// The costs of PushedMap, whose source points cost most here too.
     static constexpr PlanCosts kCosts = PushedMap::kCosts;
-    static constexpr bool kReadsComputedPoints = PushedMap::kReadsComputedPoints;
     /// The pixels of the globe, an equirectangular picture, in which directions are counted.
     static constexpr Size kGlobe{2048, 1024};
 
@@ -34,6 +33,7 @@ class InverseView {
     std::vector<Box> target_pieces() const { return m_globe.target_pieces(); }
     int source_piece(const Local& local) const { return m_view.source_piece(local.view); }
     int period() const { return m_view.period(); }
+    static bool reads_computed_points() { return PushedMap::reads_computed_points(); }
     SourceEdges source_edges() const { return m_view.source_edges(); }
     Local local_around(double x, double y, int piece) const;
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;

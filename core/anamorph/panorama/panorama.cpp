@@ -192,13 +192,13 @@ Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_
 }
 
 template <class Real>
-double Panorama::exact_error(const Interval& x, const Interval& y, int piece) const {
+double Panorama::exact_error(const Interval& x, const Interval& y, int piece, double off) const {
     using R = Rounded<Real>;
     if (!(m_target.inside(x, y, piece).hi >= 0)) return 0;
-    return exact_error(source_ray(R(x, 0, 0), R(y, 0, 0), piece));
+    return exact_error(source_ray(R(x, 0, off), R(y, 0, off), piece));
 }
-template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
-template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;
+template double Panorama::exact_error<double>(const Interval&, const Interval&, int, double) const;
+template double Panorama::exact_error<long double>(const Interval&, const Interval&, int, double) const;
 
 template <class Real>
 double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {

@@ -103,7 +103,7 @@ class Panorama {
     /// count as one; on a cube, so do those of one ray on two faces. 0 where no point has a source point;
     /// infinite where it is not certain that there is one.
     template <class Real>
-    double exact_error(const Interval& x, const Interval& y, int piece) const;
+    double exact_error(const Interval& x, const Interval& y, int piece, double off = 0) const;
     /// Bounds the rounding of exact<Real> over rays of the source.
     template <class Real>
     double exact_error(const Ray<Rounded<Real>>& ray) const;

@@ -71,7 +71,8 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     { map.exact(a, a, piece, p, piece) } -> std::same_as<bool>;
     { map.exact(b, b, piece, q, piece) } -> std::same_as<bool>;
     /// Bounds the rounding of exact<Real> over a box, its result kept in double. 0 where no point has a
-    /// source point; infinite where it is not certain that there is one.
+    /// source point; infinite where it is not certain that there is one. A fourth parameter, where there is one, is how far the
+    /// coordinates that exact() is given are off in each way; the box holds those and where they belong.
     { map.template exact_error<double>(x, x, piece) } -> std::same_as<double>;
     { map.template exact_error<long double>(x, x, piece) } -> std::same_as<double>;
 };
@@ -138,9 +139,9 @@ class PlaneMap {
         return std::isfinite(p.x) && std::isfinite(p.y);
     }
     template <class Real>
-    double exact_error(const Interval& x, const Interval& y, int) const {
+    double exact_error(const Interval& x, const Interval& y, int, double off = 0) const {
         using R = Rounded<Real>;
-        const R px(x, 0, 0), py(y, 0, 0), in = formula().inside(px, py);
+        const R px(x, 0, off), py(y, 0, off), in = formula().inside(px, py);
         if (in.range.hi + in.error <= 0) return 0;
         return lower_end(in) > 0 ? kept_error(formula().source_point(px, py)) : HUGE_VAL;
     }

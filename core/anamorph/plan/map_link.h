@@ -105,8 +105,8 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
             return 0;
     }
     bool reads_computed_points() const override {
-        if constexpr (requires { Map::kReadsComputedPoints; })
-            return Map::kReadsComputedPoints;
+        if constexpr (requires { m_map.reads_computed_points(); })
+            return m_map.reads_computed_points();
         else
             return true;
     }
@@ -137,6 +137,17 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
     }
 
   private:
+    /// Bounds how much farther apart source points are than points of a box; infinite where the map is not smooth.
+    double stretch(const Interval& x, const Interval& y, int piece) const {
+        const Local local = m_map.local_around(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi), piece);
+        const Cover cover = m_map.cover(x, y, piece, local, /*across_seam=*/true);
+        if (cover != Cover::inside) return cover == Cover::outside ? 0 : HUGE_VAL;
+        // |f(a) - f(b)| <= |f'| |a - b| on a box, which is convex; the norm is at most Frobenius's.
+        using J = Jet<Interval, 1>;
+        const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), local);
+        return std::hypot(std::hypot(magnitude(p.x.c[1]), magnitude(p.x.c[2])),
+                          std::hypot(magnitude(p.y.c[1]), magnitude(p.y.c[2])));
+    }
     template <class Real>
     double error_in(const Interval& x, const Interval& y, int piece, double off) const {
         if constexpr (requires { m_map.template exact_error<Real>(x, y, piece, off); }) {
@@ -144,15 +155,7 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
         } else {
             const double error = m_map.template exact_error<Real>(x, y, piece);
             if (off == 0 || !(error < HUGE_VAL)) return error;
-            const Local local = m_map.local_around(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi), piece);
-            const Cover cover = m_map.cover(x, y, piece, local, /*across_seam=*/true);
-            if (cover != Cover::inside) return cover == Cover::outside ? error : HUGE_VAL;
-            // |f(a) - f(b)| <= |f'| |a - b| on a box, which is convex; the norm is at most Frobenius's.
-            using J = Jet<Interval, 1>;
-            const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), local);
-            const double stretch = std::hypot(std::hypot(magnitude(p.x.c[1]), magnitude(p.x.c[2])),
-                                              std::hypot(magnitude(p.y.c[1]), magnitude(p.y.c[2])));
-            return (stretch * off + error) * rounded_detail::kUp;
+            return (stretch(x, y, piece) * off + error) * rounded_detail::kUp;
         }
     }
     static const Local& local(const LinkPlace& place) { return *static_cast<const Local*>(place.get()); }
