@@ -104,12 +104,15 @@ void read_projection(const std::string& text, SourceFacts& facts) {
     std::string rest = text.substr(blank + kFov.size());
     const std::string fov = rest.substr(0, rest.find(' '));
     rest.erase(0, fov.size());
-    constexpr std::string_view kVfov = " vfov=", kLens = " lens=";
-    std::string vfov;
-    if (rest.compare(0, kVfov.size(), kVfov) == 0) {
-        vfov = rest.substr(kVfov.size(), rest.find(' ', 1) - kVfov.size());
-        rest.erase(0, kVfov.size() + vfov.size());
-    }
+    // The words that may follow, in this order.
+    const auto next = [&](std::string_view word) -> std::string {
+        if (rest.compare(0, word.size(), word) != 0) return "";
+        const std::string value = rest.substr(word.size(), rest.find(' ', 1) - word.size());
+        rest.erase(0, word.size() + value.size());
+        return value;
+    };
+    const std::string vfov = next(" vfov="), distance = next(" d=");
+    constexpr std::string_view kLens = " lens=";
     try {
         const Projection projection = projection_from_name(text.substr(0, blank));
         if (rest.compare(0, kLens.size(), kLens) == 0)
@@ -119,8 +122,9 @@ void read_projection(const std::string& text, SourceFacts& facts) {
         return;
     }
     facts.said_by = kPanoramaProjection;
-    if (Strutil::string_is_float(fov)) facts.fov = OIIO::Strutil::from_string<float>(fov);
-    if (Strutil::string_is_float(vfov)) facts.vfov = OIIO::Strutil::from_string<float>(vfov);
+    for (const auto& [written, to] :
+         {std::pair{fov, &facts.fov}, {vfov, &facts.vfov}, {distance, &facts.distance}})
+        if (Strutil::string_is_float(written)) *to = Strutil::stod(written);
 }
 
 /// A number of metadata. EXR and TIFF bring whole ones as integers, which are no floats to OpenImageIO.
@@ -139,7 +143,9 @@ void read_photo_sphere(const ImageSpec& spec, SourceFacts& facts) {
     const bool is_possible = crop.w > 0 && crop.h > 0 && crop.w <= crop.width && crop.width <= kMost &&
                              crop.y >= 0 && crop.y + crop.h <= crop.height && crop.height <= kMost &&
                              std::fabs(crop.x) <= crop.width;
-    const bool is_whole = crop.w == crop.width && crop.h == crop.height && crop.x == 0;
+    // A whole one of square pixels is what it looks like; another one has 180 degrees from top to bottom.
+    const bool is_whole = crop.w == crop.width && crop.h == crop.height && crop.x == 0 &&
+                          facts.width * crop.h == facts.height * crop.w && crop.width == 2 * crop.height;
     if (is_possible && !is_whole) facts.crop = crop;
     const auto angle = [&](const char* name, std::optional<double>& to) {
         if (const double degrees = number(name); degrees != 0 && std::fabs(degrees) <= 360) to = degrees;

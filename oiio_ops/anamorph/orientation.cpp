@@ -53,13 +53,21 @@ namespace {
 
 /// Turns the place of a part of a panorama, as Google's Photo Sphere metadata have it of the stored image.
 void turn_photo_sphere(const StoredOrder& order, OIIO::ImageSpec& spec) {
+    constexpr float kMost = 1 << 24;
     const auto name = [](const char* what, const char* side) {
         return std::string("GPano:") + what + side + "Pixels";
     };
-    const auto number = [&](const std::string& key) { return spec.get_int_attribute(key); };
+    bool is_sound = true;
+    const auto number = [&](const std::string& key) {
+        const double given = spec.get_int_attribute(
+            key, static_cast<int>(std::lround(std::clamp(spec.get_float_attribute(key), -kMost, kMost))));
+        is_sound = is_sound && std::fabs(given) <= kMost;
+        return static_cast<int>(std::clamp<double>(given, -kMost, kMost));
+    };
     const Size whole{number(name("FullPano", "Width")), number(name("FullPano", "Height"))},
         part{number(name("CroppedAreaImage", "Width")), number(name("CroppedAreaImage", "Height"))};
     const int x = number(name("CroppedArea", "Left")), y = number(name("CroppedArea", "Top"));
+    if (!is_sound) return;
     const Box box = order.upright_box({x, y, x + part.width, y + part.height}, whole);
     const Size size = order.upright_size(whole);
     for (const auto& [key, value] : {std::pair{name("FullPano", "Width"), size.width},

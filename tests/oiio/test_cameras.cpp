@@ -99,8 +99,48 @@ TEST_F(Cameras, ResizedPartsKeepTheirPlace) {
     const std::vector<float> places = read_floats("part.exr.pano?srcyaw=0" + view);
     EXPECT_LT(largest_difference(read_floats("half.exr.pano?srcyaw=0" + view), places), 1e-5);
     EXPECT_LT(largest_difference(read_floats("narrow.exr.pano?srcyaw=0" + view), places), 1e-5);
-    // Other sizes and projections that are asked for are those of the picture as it stands.
+    // Other fields of view that are asked for are the whole's.
     EXPECT_GT(largest_difference(read_floats("part.exr.pano?srcfov=180" + view), places), 1e-2);
+}
+
+// Rows of a panorama with metadata are of 180 degrees in all, also where nothing of it was cut off.
+TEST_F(Cameras, WholePanoramasWithMetadataMayBeSqueezed) {
+    ImageBuf image = part(0, 0, kWide, kHigh);
+    say_part(image, 0, 0, kWide, kHigh);
+    write_image(image, "tagged.exr");
+    ASSERT_EQ(run("oiiotool tagged.exr --resize 160x160 -o squeezed.exr").status, 0);
+    const std::string view = ".pano?srcyaw=0&fov=70&size=40x30&yaw=-20&pitch=10&tol=0.0001&output=stmap";
+    const std::vector<float> places = read_floats("whole.exr" + view);
+    EXPECT_LT(largest_difference(read_floats("tagged.exr" + view), places), 1e-6);
+    EXPECT_LT(largest_difference(read_floats("squeezed.exr" + view), places), 1e-5);
+    EXPECT_GT(largest_difference(read_floats("squeezed.exr.pano?srccrop=none&from=latlong&" + view.substr(6)),
+                                 places),
+              0.1);
+    // Of other projections what the tags say of parts does not count.
+    ImageBuf fish = part(0, 0, 100, 50);
+    say_part(fish, 20, 30, 100, 50);
+    fish.specmod().attribute("GPano:ProjectionType", "fisheye");
+    write_image(fish, "fish.exr");
+    EXPECT_EQ(says("fish.exr.pano?size=8", "anamorph:from"), "fisheye (as GPano:ProjectionType says)");
+}
+
+// What a picture says of itself is read back to the last digit.
+TEST_F(Cameras, PicturesAreReadAsTheyWereWritten) {
+    for (const std::string to :
+         {"to=rectilinear&vfov=110", "to=pannini&d=0.5&fov=150&vfov=80", "to=fisheye&focal=7.3"}) {
+        SCOPED_TRACE(to);
+        ASSERT_EQ(run("oiiotool 'whole.exr.pano?" + to + "&size=60x40' -o seen.exr").status, 0);
+        const std::string said = says("whole.exr.pano?size=60x40&" + to, "panoramaProjection"),
+                          fov = said.substr(said.find("fov=") + 4,
+                                            said.find(' ', said.find("fov=")) - said.find("fov=") - 4);
+        std::string keys = "&srcfov=" + fov + "&from=" + said.substr(0, said.find(' '));
+        if (said.find("vfov=") != std::string::npos && to.find("fov=150") != std::string::npos)
+            keys += "&srcvfov=80&srcd=0.5";
+        const std::string view = "&to=fisheye&fov=90&size=40x30&yaw=13&pitch=-20&tol=0&output=stmap";
+        EXPECT_EQ(largest_difference(read_floats("seen.exr.pano?srcyaw=0" + view),
+                                     read_floats("seen.exr.pano?srcyaw=0" + keys + view)),
+                  0);
+    }
 }
 
 TEST_F(Cameras, PosesAreTheSourcesAngles) {
@@ -195,12 +235,13 @@ TEST_F(Cameras, SayWhatIsWrong) {
         {"to=orthographic&vfov=170&size=90x30", "vfov=170: is too much"},
         {"to=formula&vfov=90", "vfov=90: is of other projections"},
         {"srcvfov=200", "srcvfov=200: must be"},
-        {"srccrop=320x160", "srccrop=320x160: must be WxH+X+Y"},
-        {"srccrop=320x160+1+1", "srccrop=320x160+1+1: must be WxH+X+Y with the source, 320x160, inside"},
-        {"srccrop=99999999999x9+0+0", "must be WxH+X+Y"},
-        {"srccrop=640x320+700+0", "must be WxH+X+Y"},
+        {"srccrop=320x160", "srccrop=320x160: must be none, or WxH+X+Y"},
+        {"srccrop=320x160+1+1",
+         "srccrop=320x160+1+1: must be none, or WxH+X+Y with the source, 320x160, inside"},
+        {"srccrop=99999999999x9+0+0", "must be none, or WxH+X+Y"},
+        {"srccrop=640x320+700+0", "must be none, or WxH+X+Y"},
         {"srccrop=640x320+0+0&from=fisheye",
-         "srccrop=fisheye: must be of a projection whose columns are meridians"},
+         "srccrop=640x320+0+0: must be of a projection whose columns are meridians"},
         {"srcfov=180&srccrop=640x320+500+0", "must not run across the seam"},
         {"pixels=centers&srccrop=640x320+0+0", "pixels=centers: must be edges"},
     };

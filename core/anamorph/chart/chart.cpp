@@ -70,7 +70,7 @@ double most_vfov(Projection projection) {
                : limits.most;
 }
 // Heights of the plane that are taken for endless.
-constexpr double kEndless = 1e6;
+constexpr double kEndless = 1e17;
 
 /// The faces of a layout at their places. Throws Error unless they are square.
 std::vector<Piece> face_pieces(Projection projection, int width, int height, const std::string& parameter) {

@@ -75,13 +75,14 @@ bool rows_turn(Projection projection);
 /// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
-/// The size of the plane that a field of view in degrees covers, across straight ahead or from top to bottom: in radians, tangents and
-/// so on, as the projection's formulas have it. 0 where there is none. `d`: the distance of the Pannini projection.
+/// The width of the plane that a horizontal field of view in degrees covers, in radians, tangents and so on, as the projection's formulas
+/// have it. 0 where there is none. `d`: the distance of the Pannini projection.
 double plane_width(Projection projection, double fov, double d = 1);
-double plane_height(Projection projection, double vfov, double d = 1);
-/// The fields of view that cover a width and a height of the plane, at most what the projection shows.
+double plane_height(Projection projection, double vfov, double d = 1);  ///< The height, of a vertical one.
+/// The horizontal field of view that covers a width of the plane, at most what the projection shows.
 double fov_of_plane_width(Projection projection, double width, double d = 1);
-double vfov_of_plane_height(Projection projection, double height, double d = 1);
+double vfov_of_plane_height(Projection projection, double height,
+                            double d = 1);  ///< The vertical one, of a height.
 
 /// How a picture lies in its projection's plane from top to bottom.
 struct VerticalField {
@@ -132,6 +133,8 @@ class Chart {
     int height() const { return m_height; }
     double fov() const { return m_fov; }
     const VerticalField& vertical() const { return m_vertical; }
+    /// Pannini's distance d.
+    double distance() const { return m_setting.distance.d; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
     /// The lens; null where there is none, as in most pictures.

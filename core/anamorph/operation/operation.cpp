@@ -49,6 +49,7 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         if (facts.projection) key += std::string(name_of(*facts.projection)) + " as " + facts.said_by;
         for (const auto& [name, value] : {std::pair{" fov=", facts.fov},
                                           {" vfov=", facts.vfov},
+                                          {" d=", facts.distance},
                                           {" yaw=", facts.yaw},
                                           {" pitch=", facts.pitch},
                                           {" roll=", facts.roll}})

@@ -86,7 +86,8 @@ ParameterTable make_pano_table() {
             "srccrop",
             "the part of a whole panorama that the source is: WxH+X+Y, the pixels of the whole and the upper "
             "left corner of the source in it, as in 8000x4000+1200+900; srcfov and srcvfov are then the "
-            "whole's; by default as the image says (GPano:CroppedArea...), also of one that was resized"),
+            "whole's; by default as the image says (GPano:CroppedArea...), also of one that was resized; "
+            "none: it is whole"),
         number("srcd", "", "1", 0, Chart::kMostDistance,
                "Pannini's distance d of the source, for from=pannini"),
         number("d", "", "1", 0, Chart::kMostDistance,
@@ -162,8 +163,11 @@ Size default_size(Projection projection, const Field& field, double d, double ma
     const int probe = 1200;  // holds whole faces of every cube layout
     const Size shape = natural_size(field, probe);
     const Chart chart(projection, shape.width, shape.height, field.fov, PixelSpacing::edges, "", d);
+    // Where pixels are oblong, as fine as the source's shorter sides.
+    const Chart::Scale scale = source.scale();
+    const double finer = source.vertical().fov != 0 ? std::max(1.0, scale.y / scale.x) : 1;
     const double width =
-        probe * source.pixels_per_radian() / (chart.pixels_per_radian() * std::max(magnified, 1e-3));
+        probe * source.pixels_per_radian() * finer / (chart.pixels_per_radian() * std::max(magnified, 1e-3));
     const double most = kMaxDefaultSize / std::max(1.0, field.aspect);
     const int faces = std::max(1, faces_of(projection).columns);
     const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
@@ -254,11 +258,17 @@ struct TakenFieldOfView {
     std::string reason;  ///< where it goes without saying, nothing
 };
 
+/// Pannini's d of the source.
+double source_distance(const ParameterValues& values, const SourceFacts& facts, Projection from) {
+    const bool is_said = !values.given("srcd") && facts.distance && facts.projection == from;
+    return is_said ? *facts.distance : values.number("srcd");
+}
+
 /// The field of view of the source: what was asked for or what it says of itself, else by its camera's focal
 /// length, else the projection's.
 TakenFieldOfView source_field_of_view(const ParameterValues& values, const SourceFacts& facts,
                                       Projection projection, PixelSpacing spacing) {
-    const double d = values.number("srcd");
+    const double d = source_distance(values, facts, projection);
     if (const std::optional<double> asked = asked_fov(values, "src", projection, d)) return {*asked, ""};
     const bool says = facts.projection == projection;
     if (facts.fov && says) return {*facts.fov, ""};
@@ -294,11 +304,11 @@ std::optional<std::array<int, 4>> numbers_between(std::string_view text, std::st
 std::optional<PanoramaCrop> source_crop(const ParameterValues& values, const SourceFacts& facts,
                                         Projection from) {
     if (!is_given(values, "srccrop")) {
-        const bool is_as_said = facts.projection.value_or(from) == from && !values.given("srcfov") &&
-                                !is_given(values, "srcfocal");
+        const bool is_as_said = facts.projection.value_or(from) == from && rows_turn(from);
         return is_as_said ? facts.crop : std::nullopt;
     }
     const std::string text = values.text("srccrop");
+    if (text == "none") return {};
     const std::optional<std::array<int, 4>> numbers = numbers_between(text, "x++");
     const PanoramaCrop crop =
         numbers ? PanoramaCrop{double((*numbers)[0]), double((*numbers)[1]), double((*numbers)[2]),
@@ -308,9 +318,15 @@ std::optional<PanoramaCrop> source_crop(const ParameterValues& values, const Sou
                            crop.height <= kMaxSide && crop.x < crop.width && crop.y + crop.h <= crop.height;
     if (!is_inside)
         throw Error("srccrop", printable(text),
-                    "must be WxH+X+Y with the source, " + std::to_string(facts.width) + "x" +
+                    "must be none, or WxH+X+Y with the source, " + std::to_string(facts.width) + "x" +
                         std::to_string(facts.height) + ", inside of WxH");
     return crop;
+}
+
+/// A part of a panorama as srccrop has it.
+std::string text_of(const PanoramaCrop& crop) {
+    return shortest(crop.width) + "x" + shortest(crop.height) + "+" + shortest(crop.x) + "+" +
+           shortest(crop.y);
 }
 
 /// Where a part of a panorama lies: the chart of `whole` degrees is cut down to it.
@@ -321,11 +337,12 @@ struct CutView {
 CutView cut_to(const PanoramaCrop& crop, Projection from, const SourceFacts& facts, double whole,
                double srcvfov) {
     if (!rows_turn(from))
-        throw Error("srccrop", std::string(name_of(from)),
-                    "must be of a projection whose columns are meridians: equirectangular, "
-                    "cylindrical or mercator");
+        throw Error("srccrop", text_of(crop),
+                    "must be of a projection whose columns are meridians, equirectangular, cylindrical or "
+                    "mercator, which " +
+                        std::string(name_of(from)) + " is not");
     if (whole != 360 && crop.x + crop.w > crop.width)
-        throw Error("srccrop", shortest(crop.x),
+        throw Error("srccrop", text_of(crop),
                     "must not run across the seam of a panorama of " + shortest(whole) + " degrees");
     CutView cut{whole * crop.w / crop.width, ((crop.x + 0.5 * crop.w) / crop.width - 0.5) * whole, {}};
     // Units of the plane for a pixel of the whole.
@@ -395,10 +412,17 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
     const auto [fov, fov_reason] = source_field_of_view(values, facts, from, spacing);
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    const bool has_vfov = is_given(values, "srcvfov");
+    const double d = source_distance(values, facts, from);
+    const bool has_vfov = is_given(values, "srcvfov"),
+               is_asked = asked_fov(values, "src", from, d).has_value(),
+               is_said = facts.fov && facts.projection == from;
     CutView cut{fov, 0, {}};
     std::string whole;
     if (const std::optional<PanoramaCrop> crop = source_crop(values, facts, from)) {
+        if (spacing == PixelSpacing::centers)
+            throw Error("pixels", "centers", "must be edges of a part of a panorama");
+        if (srclens.kind != LensModel::Kind::none)
+            throw Error("srclens", srclens.text(), "must not be given of a part of a panorama");
         // Metadata are of panoramas of 180 degrees from top to bottom, where these are the rows' unit.
         const bool by_metadata = !is_given(values, "srccrop") && from == Projection::equirectangular;
         const double vfov = has_vfov                                         ? values.number("srcvfov")
@@ -407,18 +431,13 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
         cut = cut_to(*crop, from, facts, fov, vfov);
         whole = ", a part of " + shortest(crop->width) + "x" + shortest(crop->height) + " at " +
                 shortest(crop->x) + "," + shortest(crop->y);
-        if (spacing == PixelSpacing::centers)
-            throw Error("pixels", "centers", "must be edges of a part of a panorama");
     } else if (has_vfov) {
         // What made the horizontal field of view has square pixels.
-        if (rows_turn(from) || asked_fov(values, "src", from, values.number("srcd")) ||
-            (facts.fov && facts.projection == from))
-            cut.vertical.fov = values.number("srcvfov");
-    } else if (facts.vfov && facts.projection == from && !values.given("srcfov")) {
+        if (rows_turn(from) || is_asked || is_said) cut.vertical.fov = values.number("srcvfov");
+    } else if (facts.vfov && is_said && !is_asked) {
         cut.vertical.fov = *facts.vfov;
     }
-    return {Chart(from, facts.width, facts.height, cut.fov, spacing, "src", values.number("srcd"), srclens,
-                  cut.vertical),
+    return {Chart(from, facts.width, facts.height, cut.fov, spacing, "src", d, srclens, cut.vertical),
             reason + fov_reason + whole, cut.ahead};
 }
 

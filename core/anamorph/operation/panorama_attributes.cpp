@@ -9,6 +9,7 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     Attributes says;
     std::string projection = std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov());
     if (picture.vertical().fov != 0) projection += " vfov=" + shortest(picture.vertical().fov);
+    if (picture.projection() == Projection::pannini) projection += " d=" + shortest(picture.distance());
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;
@@ -19,8 +20,9 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     };
     if (picture.projection() == Projection::cubemap) environment("CubeFace Environment");
     // A whole turn, and as much of the poles as whole rows can say.
-    const bool turn = picture.projection() == Projection::equirectangular && picture.fov() == 360 &&
-                      picture.vertical().fov == 0;
+    const bool is_square = picture.vertical().fov == 0 || (picture.vertical().fov == 180 && w == 2 * h);
+    const bool turn =
+        picture.projection() == Projection::equirectangular && picture.fov() == 360 && is_square;
     if (turn && w % 2 == 0 && h <= whole && (whole - h) % 2 == 0) {
         says.push_back({"GPano:ProjectionType", "equirectangular"});
         for (const auto& [name, value] : {std::pair{"FullPanoWidthPixels", w},
