@@ -44,10 +44,10 @@ def write_sources(side):
                                  .5 + .2 * np.cos(x / 9)], -1), "half")
     write("waves.exr", (.5 + .4 * np.sin(2 * math.pi * (x[:256, :384] + .5) / 5))[..., None], "float")
     random = np.random.default_rng(1)
-    moved = [[c / MESH, r / MESH] + (random.uniform(-.01, .01, 2) if 0 < r < MESH and 0 < c < MESH else 0)
-             for r in range(MESH + 1) for c in range(MESH + 1)]
+    vertices = np.stack(np.meshgrid(*[np.linspace(0, 1, MESH + 1)] * 2), -1)
+    vertices[1:-1, 1:-1] += random.uniform(-.01, .01, (MESH - 1, MESH - 1, 2))
     with open("grid.json", "w", encoding="utf-8") as file:
-        json.dump({"columns": MESH, "rows": MESH, "units": "fractions", "vertices": [list(v) for v in moved]}, file)
+        json.dump({"columns": MESH, "rows": MESH, "units": "fractions", "vertices": vertices.reshape(-1, 2).tolist()}, file)
 
 
 def amplitude(name):
