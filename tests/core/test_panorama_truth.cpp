@@ -180,6 +180,15 @@ class Random {
                 return between(-200, 200);
         }
     }
+    Scheme scheme() {
+        return chance(0.2)   ? Scheme::residual
+               : chance(0.3) ? Scheme::direct
+               : chance(0.5) ? Scheme::blocks
+                             : Scheme::automatic;
+    }
+    /// Often upright.
+    Orientation look() { return {angle(), angle(), chance(0.5) ? 0 : angle()}; }
+    Orientation orientation() { return {angle(), angle(), angle()}; }
     View view(Projection projection, bool large) {
         View v{projection, 0, 0, 90};
         const int size = static_cast<int>(large ? std::pow(2, between(3, 22)) : between(20, 90));
@@ -253,11 +262,8 @@ TEST(PanoramaTruth, NoPixelIsOverItsBound) {
         for (const Projection from : kAll)
             for (const Projection to : kAll) {
                 Scene scene{random.view(from, true), random.view(to, false), {}, kTols[random.integer(0, 4)]};
-                scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
-                scene.scheme = random.chance(0.2)   ? Scheme::residual
-                               : random.chance(0.3) ? Scheme::direct
-                               : random.chance(0.5) ? Scheme::blocks
-                                                    : Scheme::automatic;
+                scene.look = random.look();
+                scene.scheme = random.scheme();
                 if (scene.source.width > 8 && scene.source.height > 48 && random.chance(0.2))
                     scene.source.centers = true;
                 pixels += expect_truth(scene).pixels;
@@ -280,13 +286,10 @@ TEST(PanoramaTruth, NoPixelIsOverItsBoundOfPartsAndOblongPixels) {
                 Scene scene{random.view(from, true), random.view(to, false), {}, kTols[random.integer(0, 4)]};
                 random.lay(scene.source);
                 random.lay(scene.target);
-                scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
-                if (random.chance(0.5)) scene.held = {random.angle(), random.angle(), random.angle()};
+                scene.look = random.look();
+                if (random.chance(0.5)) scene.held = random.orientation();
                 if (random.chance(0.5)) scene.held.ahead = random.angle();
-                scene.scheme = random.chance(0.2)   ? Scheme::residual
-                               : random.chance(0.3) ? Scheme::direct
-                               : random.chance(0.5) ? Scheme::blocks
-                                                    : Scheme::automatic;
+                scene.scheme = random.scheme();
                 if (scene.source.width > 8 && scene.source.height > 48 && random.chance(0.2))
                     scene.source.centers = true;
                 pixels += expect_truth(scene).pixels;
@@ -310,12 +313,9 @@ TEST(PanoramaTruth, NoPixelIsOverItsBoundThroughLenses) {
                 scene.source.lens = random.lens(scene.source);
                 scene.target.lens = random.lens(scene.target);
                 if (scene.source.lens.text() == "none" && scene.target.lens.text() == "none") continue;
-                scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
-                if (random.chance(0.5)) scene.held = {random.angle(), random.angle(), random.angle()};
-                scene.scheme = random.chance(0.2)   ? Scheme::residual
-                               : random.chance(0.3) ? Scheme::direct
-                               : random.chance(0.5) ? Scheme::blocks
-                                                    : Scheme::automatic;
+                scene.look = random.look();
+                if (random.chance(0.5)) scene.held = random.orientation();
+                scene.scheme = random.scheme();
                 try {
                     static_cast<void>(scene.map());
                 } catch (const Error&) {

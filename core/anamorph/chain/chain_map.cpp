@@ -108,19 +108,24 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
         if (!m_outer->exact(x.lo, y.lo, piece, at, outer_piece)) return 0;
         points = {Interval(at.x), Interval(at.y)};
     }
-    points = {widened(points.x, error), widened(points.y, error)};
-
     const int period = m_outer->source_period();
-    if (period == 0) return error_from(in_middle(points, m_middle.origin), error, in_long_double);
-    points = in_middle(points, shift_about(middle_of(points.x)));
+    const Point<double> shift = shift_about(middle_of(points.x));
+    // Shifted, a point is rounded once more.
+    const bool is_shifted = shift.x != 0 || shift.y != 0;
+    const double off_there = is_shifted
+                                 ? error + 0x1p-53 * (magnitude(points.x) + magnitude(points.y) +
+                                                      std::fabs(shift.x) + std::fabs(shift.y) + 2 * error)
+                                 : error;
+    points = in_middle(Point<Interval>{widened(points.x, off_there), widened(points.y, off_there)}, shift);
+    if (period == 0) return error_from(points, off_there, in_long_double);
     if (m_middle.has_poles) points.y = part_of(points.y, 0, m_inner->target_size().height);
-    if (is_within(points.x, 0, period)) return error_from(points, error, in_long_double);
+    if (is_within(points.x, 0, period)) return error_from(points, off_there, in_long_double);
     // Across the seam the computed point may lie at one end and the true one at the other: no matter where the inner map
     // goes on there.
     if (m_inner->target_period() != period || !(points.x.hi - points.x.lo < period)) return HUGE_VAL;
     const double turn = points.x.lo < 0 ? period : -period;
-    const auto error_of_part = [&](double shift) {
-        return error_from({part_of(points.x + Interval(shift), 0, period), points.y}, error, in_long_double);
+    const auto error_of_part = [&](double by) {
+        return error_from({part_of(points.x + Interval(by), 0, period), points.y}, off_there, in_long_double);
     };
     return std::max(error_of_part(0), error_of_part(turn));
 }
