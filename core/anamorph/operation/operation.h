@@ -32,7 +32,7 @@ struct Picture;
 /// A part of a panorama, in pixels of the whole one, whatever size it was brought to since.
 struct PanoramaCrop {
     double width = 0, height = 0;       ///< of the whole panorama
-    double x = 0, y = 0, w = 0, h = 0;  ///< the upper left corner and the size of the part, which may lie across the seam
+    double x = 0, y = 0, w = 0, h = 0;  ///< corner and size of the part, which may lie across the seam
 };
 
 /// The facts of a source that are known before a pixel is read.

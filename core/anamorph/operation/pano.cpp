@@ -71,11 +71,14 @@ ParameterTable make_pano_table() {
         number(
             "srcvfov", "degrees", "", 1e-6, 360,
             "vertical field of view of the source, where its pixels are not square; srcfov is then 360 for "
-            "projections that close, and for others what square pixels make of it, unless it is given"),
+            "equirectangular, cylindrical and mercator, and for others what square pixels make of it, unless "
+            "it is given"),
         number(
             "vfov", "degrees", "", 1e-6, 360,
-            "vertical field of view of the picture; without fov that is 360 for projections that close, and "
-            "for others what square pixels make of vfov and size. With both, pixels need not be square"),
+            "vertical field of view of the picture. Without fov that is 360 for equirectangular, cylindrical "
+            "and mercator, and for others what square pixels make of vfov and size; where size has no "
+            "height, "
+            "fov is the projection's, and the height follows. With both, pixels need not be square"),
         number("srcfocal", "mm", "", 1e-3, 1e6,
                "focal length of the source's camera, in place of srcfov, for a sensor as wide as srcsensor"),
         number("srcsensor", "mm", "36", 1e-3, 1e6, "width of the source's sensor or film, for srcfocal"),
