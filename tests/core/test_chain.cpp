@@ -303,6 +303,32 @@ TEST(Chain, HoldsEveryTolerance) {
         }
 }
 
+// What the outer map rounds is moved by the inner one, here by far more than that rounds itself.
+TEST(Chain, KnowsWhatTheOuterMapRounds) {
+    const Size plate{310, 206};
+    Settings settings;
+    settings.tol = 0;
+    FormulaText text;
+    text.u = "(x/3+1e9)-1e9+90";
+    text.v = "y/3+60";
+    const PlaneFormula formula = parse_formula(text, {plate, plate});
+    const auto plan =
+        std::make_shared<const TextPlan>(TextMap(formula, plate, plate, plate), plan_of(settings));
+    const Link outer{picture_through(plan, flat_border(plate), settings.filter, Output::color),
+                     [](const Point<Real>& p) {
+                         return Point<Real>{p.x / 3 + 90, p.y / 3 + 60};
+                     }};
+    const std::vector<Link> links{
+        outer, lens_link("brown:k1=-0.2,k2=0.05,k3=-0.004", LensMode::undistort, plate, plate, settings)};
+    const Joined joined = joined_of(links);
+    ASSERT_TRUE(joined.picture) << joined.reason;
+    const Findings found = examine(*joined.picture->maps[0].blocks, links);
+    EXPECT_EQ(found.over, 0);
+    EXPECT_EQ(found.pixels, found.drawn);
+    EXPECT_GT(found.bound, 1e-8);
+    EXPECT_LT(found.bound, 1e-6);
+}
+
 // The smaller tolerance is that of the chain, and a link that is exact makes all of it so.
 TEST(Chain, TakesTheSmallerTolerance) {
     const Size plate{310, 206};
