@@ -186,6 +186,35 @@ TEST_F(Cameras, PixelsNeedNotBeSquare) {
     EXPECT_LT(largest_difference(uv, whole), 2e-4);
 }
 
+// A picture without a size is as fine as the shorter sides of its source's pixels.
+TEST_F(Cameras, DefaultSizesSeeOblongPixels) {
+    ASSERT_EQ(run("oiiotool whole.exr --resize 64x256 -o tall.exr").status, 0);
+    const auto input = open("tall.exr.pano?from=latlong&srcvfov=180&to=equirectangular");
+    ASSERT_TRUE(input);
+    EXPECT_EQ(input->spec().width, 512);
+    EXPECT_EQ(input->spec().height, 256);
+}
+
+// The place of a part is turned with its picture, also where its numbers are written as floats.
+TEST_F(Cameras, PartsMayBeStoredTurned) {
+    ImageBuf image = part(60, 40, 160, 80);
+    write_image(image, "part.exr");
+    ImageBuf turned = OIIO::ImageBufAlgo::rotate180(image);
+    turned.specmod().attribute("Orientation", 3);
+    // Of the stored picture, which is upside down: as far from the other corner.
+    say_part(turned, kWide - 60 - 160, kHigh - 40 - 80, 160, 80);
+    for (const char* name : {"FullPanoWidth", "FullPanoHeight", "CroppedAreaLeft", "CroppedAreaTop",
+                             "CroppedAreaImageWidth", "CroppedAreaImageHeight"}) {
+        const std::string key = std::string("GPano:") + name + "Pixels";
+        turned.specmod().attribute(key, static_cast<float>(turned.spec().get_int_attribute(key)));
+    }
+    write_image(turned, "turned.exr");
+    const std::string view = "&fov=40&size=40x30&yaw=-20&tol=0.0001";
+    EXPECT_EQ(largest_difference(read_floats("turned.exr.pano?srcyaw=0" + view),
+                                 read_floats("part.exr.pano?from=latlong&srccrop=320x160+60+40" + view)),
+              0);
+}
+
 TEST_F(Cameras, ViewsByHeightAndByFocalLength) {
     const auto same = [](const std::string& a, const std::string& b) {
         SCOPED_TRACE(a + " and " + b);
