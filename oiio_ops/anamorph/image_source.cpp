@@ -554,19 +554,19 @@ std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, 
     return result;
 }
 
-void WorkingSpace::convert(const OIIO::ColorProcessor& processor, float* pixels, int width,
-                           int height) const {
+void WorkingSpace::convert(const OIIO::ColorProcessor& processor, float* pixels, int width, int height,
+                           int channels) const {
     const std::ptrdiff_t count = std::ptrdiff_t{width} * height;
     // Colour curves are for colour that is not multiplied by alpha.
     const auto each = [&](auto change) {
         for (std::ptrdiff_t i = 0; m_alpha >= 0 && i < count; ++i)
-            change(pixels + i * m_channels, m_channels, m_alpha);
+            change(pixels + i * channels, m_channels, m_alpha);
     };
-    each([](float* pixel, int channels, int alpha) { unassociate_alpha(pixel, channels, alpha); });
-    const auto stride = OIIO::stride_t{m_channels} * OIIO::stride_t{sizeof(float)};
+    each([](float* pixel, int of, int alpha) { unassociate_alpha(pixel, of, alpha); });
+    const auto stride = OIIO::stride_t{channels} * OIIO::stride_t{sizeof(float)};
     processor.apply(pixels, width, height, std::min(m_channels, 3), sizeof(float), stride, stride * width);
-    each([](float* pixel, int channels, int alpha) {
-        if (pixel[alpha] != 0) associate_alpha(pixel, channels, alpha);
+    each([](float* pixel, int of, int alpha) {
+        if (pixel[alpha] != 0) associate_alpha(pixel, of, alpha);
     });
 }
 

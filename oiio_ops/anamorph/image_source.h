@@ -175,11 +175,17 @@ class WorkingSpace {
     /// Null when there is nothing to convert.
     static std::shared_ptr<const WorkingSpace> make(const std::string& name, const OIIO::ImageSpec& spec);
 
-    void to_working(float* pixels, int width, int height) const { convert(*m_there, pixels, width, height); }
-    void from_working(float* pixels, int width, int height) const { convert(*m_back, pixels, width, height); }
+    void to_working(float* pixels, int width, int height) const {
+        convert(*m_there, pixels, width, height, m_channels);
+    }
+    /// `channels`: those of the image, and perhaps more, which do not change.
+    void from_working(float* pixels, int width, int height, int channels) const {
+        convert(*m_back, pixels, width, height, channels);
+    }
 
   private:
-    void convert(const OIIO::ColorProcessor& processor, float* pixels, int width, int height) const;
+    void convert(const OIIO::ColorProcessor& processor, float* pixels, int width, int height,
+                 int channels) const;
 
     OIIO::ColorProcessorHandle m_there, m_back;
     int m_channels = 0;

@@ -188,6 +188,7 @@ void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
 SourceFacts facts_of(const ImageSpec& spec) {
     const Frame frame = frame_of(spec);
     SourceFacts facts{frame.width, frame.height, {}, {}, {}};
+    facts.has_alpha = spec.alpha_channel >= 0;
     if (const SourceLevel level = frame.level(); !(level.extent == SourceLevel(level.size).extent))
         facts.overscan = level.extent;
     read_focal_length(spec, facts);
@@ -267,7 +268,8 @@ void set_channels(ImageSpec& spec, const std::vector<std::string>& names) {
 
 bool moves_stored(const PictureRequest& picture, const std::vector<ImageSpec>& sources,
                   const std::string& space) {
-    if (!picture.moves || *picture.moves >= sources.size() || !space.empty()) return false;
+    if (!picture.moves || picture.adds_alpha || *picture.moves >= sources.size() || !space.empty())
+        return false;
     const ImageSpec &shown = sources[*picture.moves], &first = sources[0];
     return loses_values(shown) && shown.nchannels == first.nchannels && shown.format == first.format &&
            shown.channelformats == first.channelformats;
@@ -298,6 +300,10 @@ ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, b
                                                                  : std::vector<std::string>{"Y"});
     else if (!source)
         set_channels(spec, picture.channels);
+    else if (picture.adds_alpha) {
+        spec.alpha_channel = spec.nchannels++;
+        spec.channelnames.emplace_back("A");
+    }
     check_size(spec);
     OIIO::ParamValueList kept;
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {

@@ -81,7 +81,7 @@ void draw_picture(const SolvedPicture& picture, const SourceStacks& stacks, cons
                   parallel_for);
     parallel_for(box.height(), [&](std::int64_t y) {
         float* values = pixels.data() + row * static_cast<std::size_t>(y);
-        space->from_working(values, box.width(), 1);
+        space->from_working(values, box.width(), 1, view.channels);
         for (int x = 0; x < box.width(); ++x)
             for (int c = 0; c < view.channels; ++c)
                 store_channel(values[static_cast<std::size_t>(x * view.channels + c)],

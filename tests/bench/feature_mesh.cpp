@@ -165,7 +165,7 @@ struct FeatureMesh::State {
 };
 
 FeatureMesh::FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes)
-    : FeatureBlocks(map, shapes), m_state(std::make_unique<State>(map, cells, levels, shapes)) {}
+    : FeatureBlocks(map, shapes, {}), m_state(std::make_unique<State>(map, cells, levels, shapes)) {}
 FeatureMesh::~FeatureMesh() = default;
 
 std::int64_t FeatureMesh::evaluations() const {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "anamorph/image/strip_source.h"
+#include "anamorph/image/part_source.h"
 #include "anamorph/panorama/concentric_view.h"
 #include "pixels.h"
 #include "projection_rows.h"
@@ -72,10 +72,11 @@ void run_mosaics(const Settings& settings, Report& report) {
         texels.as<float>()[i] = static_cast<float>(i * 2654435761u % 65536) / 65536;
     const MemorySource stacked(
         packed_view<const std::byte>(texels.bytes(), PixelType::float32, 4 * side, side * kCircles, 3));
-    std::deque<StripSource> strips;
+    std::deque<PartSource> strips;
     std::vector<const Source*> sources;
     for (int circle = 0; circle < kCircles; ++circle)
-        sources.push_back(&strips.emplace_back(stacked, circle * side, side));
+        sources.push_back(
+            &strips.emplace_back(stacked, Box{0, circle * side, stacked.size(0).width, (circle + 1) * side}));
     const ConcentricStack stack{kCircles, kDepth, {kRight, kAhead}};
     struct Case {
         const char* scheme;

@@ -136,9 +136,9 @@ class LensOracle {
     explicit LensOracle(const View& v) : m_kind(v.lens.kind), m_values(v.lens.values) {
         using enum LensModel::Kind;
         const std::size_t n = m_values.size();
-        m_unit = m_kind == ptlens      ? std::min(v.width, v.height) / Real(2)
-                 : m_kind == three_de4 ? std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / 2
-                                       : scale(v).x;
+        m_unit = m_kind == ptlens    ? std::min(v.width, v.height) / Real(2)
+                 : is_of_observed() ? std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / 2
+                                    : scale(v).x;
         m_cx = Real(v.width) / 2 + m_values[n - 2];
         m_cy = Real(v.height) / 2 + m_values[n - 1];
         // In steps up to where the radius falls; the top lies within one of them.
@@ -157,7 +157,11 @@ class LensOracle {
         }
         m_end = (low + high) / 2;
     }
-    /// The model's own polynomial.
+    /// Is the formula one of observed points?
+    bool is_of_observed() const {
+        return m_kind == LensModel::Kind::three_de4 || m_kind == LensModel::Kind::division;
+    }
+    /// The model's own function.
     Real formula(Real r) const {
         using enum LensModel::Kind;
         const auto k = [&](std::size_t i) { return Real(m_values[i]); };
@@ -170,6 +174,8 @@ class LensOracle {
                        (1 + k(3) * r2 + k(4) * r4 + k(5) * r2 * r4);
             case three_de4:
                 return r + k(0) * r2 * r + k(1) * r4 * r;
+            case division:
+                return r / (1 + k(0) * r2 + k(1) * r4);
             default:
                 return r + k(0) * r2 * r + k(1) * r4 * r + k(2) * r4 * r2 * r + k(3) * r4 * r4 * r;
         }
@@ -192,9 +198,9 @@ class LensOracle {
     Point<Real> observed(const View& v, const Point<Real>& ideal) const {
         const Real x = (ideal.x - Real(v.width) / 2) / m_unit, y = (ideal.y - Real(v.height) / 2) / m_unit;
         const Real r = std::hypot(x, y), angle = std::atan2(y, x);
-        if (m_kind != LensModel::Kind::three_de4 && r > m_end) return {NAN, NAN};
+        if (!is_of_observed() && r > m_end) return {NAN, NAN};
         if (r == 0) return {m_cx, m_cy};
-        const Real radius = m_kind == LensModel::Kind::three_de4 ? root(r) : formula(r);
+        const Real radius = is_of_observed() ? root(r) : formula(r);
         Point<Real> p{radius * std::cos(angle), radius * std::sin(angle)};
         if (m_kind == LensModel::Kind::brown) {
             const Real p1 = m_values[6], p2 = m_values[7];
@@ -206,8 +212,8 @@ class LensOracle {
     Point<Real> ideal(const View& v, const Point<Real>& observed) const {
         const Real x = (observed.x - m_cx) / m_unit, y = (observed.y - m_cy) / m_unit;
         const Real r = std::hypot(x, y), angle = std::atan2(y, x);
-        if (m_kind == LensModel::Kind::three_de4 && r > m_end) return {NAN, NAN};
-        const Real radius = m_kind == LensModel::Kind::three_de4 ? formula(r) : root(r);
+        if (is_of_observed() && r > m_end) return {NAN, NAN};
+        const Real radius = is_of_observed() ? formula(r) : root(r);
         const Point<Real> p{radius * std::cos(angle) * m_unit + Real(v.width) / 2,
                             radius * std::sin(angle) * m_unit + Real(v.height) / 2};
         const bool tangential = m_kind == LensModel::Kind::brown && (m_values[6] != 0 || m_values[7] != 0) &&

@@ -154,9 +154,10 @@ TEST(Chart, FieldOfViewRunsFromEdgeToEdge) {
                 for (const double side : {-1.0, 1.0}) {
                     const Ray<double> ray = chart.ray(side < 0 ? edge : 300 - edge, 100.0);
                     EXPECT_NEAR(ray.y, 0, 1e-12);
-                    // The angle from straight ahead, of half the field of view.
+                    // The angle from the middle's ray, of half the field of view.
                     const double half = fov / 2 * kPi / 180;
-                    EXPECT_NEAR(std::fabs(std::atan2(ray.x, ray.z)), half, 1e-12 + 1e-9 * half)
+                    const double ahead = projection == Projection::mirror_ball ? -ray.z : ray.z;
+                    EXPECT_NEAR(std::fabs(std::atan2(ray.x, ahead)), half, 1e-12 + 1e-9 * half)
                         << name_of(projection) << ' ' << fov;
                     if (fov < 360) {
                         EXPECT_GT(ray.x * side, 0);
@@ -184,8 +185,10 @@ TEST(Chart, TheMiddleLooksAheadRightIsRightAndDownIsDown) {
         if (has_faces(projection)) continue;
         for (const PixelSpacing spacing : kSpacings) {
             const Chart chart(projection, 300, 200, 80, spacing);
-            expect_direction(chart.ray(150.0, 100.0), 0, 0, 1);
-            const Point<double> p = chart.point(Ray<double>{0, 0, 5}, 0);
+            // But for the ball, which shows the camera there.
+            const double ahead = projection == Projection::mirror_ball ? -1 : 1;
+            expect_direction(chart.ray(150.0, 100.0), 0, 0, ahead);
+            const Point<double> p = chart.point(Ray<double>{0, 0, 5 * ahead}, 0);
             EXPECT_NEAR(p.x, 150, 1e-12);
             EXPECT_NEAR(p.y, 100, 1e-12);
             EXPECT_GT(chart.ray(160.0, 100.0).x, 0);

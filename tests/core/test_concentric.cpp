@@ -8,7 +8,7 @@
 #include <deque>
 #include <numbers>
 
-#include "anamorph/image/strip_source.h"
+#include "anamorph/image/part_source.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/panorama/concentric_view.h"
 
@@ -93,10 +93,11 @@ struct View {
 
 std::vector<float> draw(const Picture& picture, const Wall& wall, int side, int channels = 3) {
     const MemorySource stack = wall.source();
-    std::vector<StripSource> strips;
-    for (int i = 0; i < wall.circles; ++i) strips.emplace_back(stack, i * wall.rows, wall.rows);
+    std::vector<PartSource> strips;
+    for (int i = 0; i < wall.circles; ++i)
+        strips.emplace_back(stack, Box{0, i * wall.rows, stack.size(0).width, (i + 1) * wall.rows});
     std::vector<const Source*> sources;
-    for (const StripSource& strip : strips) sources.push_back(&strip);
+    for (const PartSource& strip : strips) sources.push_back(&strip);
     std::vector<float> pixels(static_cast<std::size_t>(side * side * channels));
     EXPECT_TRUE(picture.draw(sources, {0, 0, side, side},
                              packed_view(std::as_writable_bytes(std::span(pixels)).data(), PixelType::float32,
@@ -314,9 +315,11 @@ TEST(Concentric, PartsAreTheSameAsTheWhole) {
         const Picture seen = mosaic_picture(view.of(wall), {5, HUGE_VAL, {0.5, -0.6}}, options);
         const std::vector<float> whole = draw(seen, wall, 64), part = [&] {
             const MemorySource stack = wall.source();
-            std::deque<StripSource> strips;
+            std::deque<PartSource> strips;
             std::vector<const Source*> sources;
-            for (int i = 0; i < 5; ++i) sources.push_back(&strips.emplace_back(stack, 8 * 5 * i, 40));
+            for (int i = 0; i < 5; ++i)
+                sources.push_back(
+                    &strips.emplace_back(stack, Box{0, 8 * 5 * i, stack.size(0).width, 8 * 5 * i + 40}));
             std::vector<float> pixels(30 * 20 * 3);
             EXPECT_TRUE(seen.draw(
                 sources, {21, 33, 51, 53},
@@ -331,11 +334,11 @@ TEST(Concentric, PartsAreTheSameAsTheWhole) {
     }
 }
 
-TEST(StripSource, KeepsTheLevelsThatDoNotMix) {
+TEST(PartSource, KeepsTheLevelsThatDoNotMix) {
     std::vector<std::byte> texels(16 * 24);
     for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = std::byte(i);
     const MemorySource base(packed_view<const std::byte>(texels.data(), PixelType::uint8, 16, 24, 1));
-    const StripSource strip(base, 8, 8);
+    const PartSource strip(base, {0, 8, 16, 16});
     EXPECT_EQ(strip.levels(), 1);
     EXPECT_EQ(strip.size(0), (Size{16, 8}));
     std::byte row[16];

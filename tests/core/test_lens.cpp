@@ -44,6 +44,8 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "3de4:k1=0.1,k2=0.03",
                                "3de4:k1=-0.25,d=20,e=10",
                                "3de4:k1=-0.5,k2=0.2",
+                               "division:k1=-0.25",
+                               "division:k1=0.2,k2=-0.05,d=-15,e=8",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003",
                                "kb4:k1=-0.1,k2=0.02,k3=-0.003,k4=0.0002,e=3"};
 
@@ -314,7 +316,7 @@ void expect_refused(const std::string& text, const std::string& rule) {
 }
 
 TEST(LensModel, RefusesWhatItCannotRead) {
-    expect_refused("", "must begin with one of none, ptlens, brown, 3de4, kb4");
+    expect_refused("", "must begin with one of none, ptlens, brown, 3de4, kb4, division");
     expect_refused("plens:a=1", "must begin with one of");
     expect_refused("none:a=1", "none has no values");
     for (const char* text :
@@ -334,6 +336,7 @@ TEST(Lens, RefusesToFoldWithinThePicture) {
     // A tangential part takes up half of the rest before the picture folds.
     expect_refused("brown:p1=0.5", "ends at a radius of");
     expect_refused("3de4:k1=-3", "folds at a radius of");
+    expect_refused("division:k1=4", "folds at a radius of");
     expect_refused("kb4:k1=-2", "folds at a radius of");
 }
 
@@ -355,6 +358,7 @@ TEST(Lens, IsRefusedWherePicturesHaveNone) {
         const bool none = lensed == Lensed::no;
         EXPECT_EQ(rule(p, "ptlens:b=0.01") != "", none) << name_of(p);
         EXPECT_EQ(rule(p, "3de4:k1=0.01") != "", none) << name_of(p);
+        EXPECT_EQ(rule(p, "division:k1=-0.01") != "", none) << name_of(p);
         EXPECT_EQ(rule(p, "brown:k1=0.01") != "", p != Projection::rectilinear) << name_of(p);
         EXPECT_EQ(rule(p, "kb4:k1=0.01") != "", p != Projection::fisheye) << name_of(p);
     }

@@ -27,6 +27,7 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "brown:p1=-0.01,d=30",
                                "brown:k1=0.05,k4=0.02,p1=0.005,p2=0.02,e=-20",
                                "3de4:k1=0.1,k2=0.03",
+                               "division:k1=-0.1,k2=0.01",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
 Chart chart_with(const char* text) {

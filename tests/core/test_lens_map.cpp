@@ -36,6 +36,8 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003",
                                "3de4:k1=-0.25,d=20,e=10",
                                "3de4:k1=0.1,k2=0.03",
+                               "division:k1=-0.3",
+                               "division:k1=0.1,k2=0.03,d=9",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
 /// Where a lens's centre is, from the picture's middle, in pixels: its last two values.

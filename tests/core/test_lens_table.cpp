@@ -26,6 +26,7 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "brown:k1=0.1,k2=0.02,k3=0.001,k4=0.15,k5=0.01,k6=0.002",
                                "3de4:k1=0.1,k2=0.03",
                                "3de4:k1=-0.25",
+                               "division:k1=-0.1,k2=0.01",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
 /// The k-th divided difference of f over k + 1 points: its k-th derivative somewhere between them, over k!.

@@ -301,7 +301,7 @@ TEST(Overscan, PanoramasOfItAreThoseOfTheLargerPicture) {
                     options.filter = filter;
                     options.tol = 1e-5;
                     // Of both, so that nothing is left out that lies beyond either's edges, and blocks are the same.
-                    options.overscan = true;
+                    options.source_overscan = true;
                     const Picture whole = reprojected_picture(
                         Panorama(Chart(Projection::rectilinear, size.width, size.height, wider), target,
                                  turned),

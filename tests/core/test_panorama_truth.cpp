@@ -228,10 +228,10 @@ class Random {
         const LensModel::Kind own = v.projection == rectilinear ? brown
                                     : v.projection == fisheye   ? kb4
                                                                 : ptlens;
-        LensModel model{chance(0.4) ? own : chance(0.5) ? ptlens : three_de4, {}};
+        LensModel model{chance(0.4) ? own : chance(0.5) ? ptlens : chance(0.5) ? three_de4 : division, {}};
         model.values.resize(LensModel::names(model.kind).size());
         // The farthest corner, in the model's unit.
-        const double unit = model.kind == ptlens || model.kind == three_de4
+        const double unit = model.kind == ptlens || model.kind == three_de4 || model.kind == division
                                 ? 1
                                 : std::hypot(v.width, v.height) / 2 / static_cast<double>(oracle::scale(v).x);
         for (std::size_t i = 0; i + 2 < model.values.size() && i < 6; ++i)

@@ -72,12 +72,14 @@ class Oracle {
         const Real h = static_cast<Real>(chart.fov()) / 2 * kDegree;
         switch (m_projection) {
             case Projection::pannini:
+            case Projection::unified:
                 m_half = (d + 1) * std::sin(h) / (d + std::cos(h));
                 break;
             case Projection::orthographic:
                 m_half = std::sin(h);
                 break;
             case Projection::equisolid:
+            case Projection::mirror_ball:
                 m_half = 2 * std::sin(h / 2);
                 break;
             case Projection::hammer:
@@ -96,9 +98,9 @@ class Oracle {
     Vector ray(Real x, Real y) const {
         switch (m_projection) {
             case Projection::eac: {
-                const Real side = m_width / Real(3);
-                const int column = static_cast<int>(x / side), row = static_cast<int>(y / side);
-                const Real u = (x / side - column - 0.5L) * kPi / 2, v = (y / side - row - 0.5L) * kPi / 2;
+                const Real side = m_width / Real(3), down = m_height / Real(2);
+                const int column = static_cast<int>(x / side), row = static_cast<int>(y / down);
+                const Real u = (x / side - column - 0.5L) * kPi / 2, v = (y / down - row - 0.5L) * kPi / 2;
                 // On a face tan u, tan v, 1: an elevation of tan v cos u, at the face's azimuth and u.
                 const Vector upper =
                     of_angles((column - 1) * kPi / 2 + u, std::atan(std::tan(v) * std::cos(u)));
@@ -108,6 +110,14 @@ class Oracle {
                 const Real side = m_width / Real(2);
                 const bool front = x >= side;
                 const Real px = (x / side - front - 0.5L) * 2 * m_half, py = (y / side - 0.5L) * 2 * m_half;
+                const Real r = std::hypot(px, py);
+                if (r > std::min(m_half, kPi)) return kNoRay;
+                const Vector v = of_polar(r, std::atan2(py, px));
+                return front ? v : Vector{-v.x, v.y, -v.z};
+            }
+            case Projection::dual_fisheye_tb: {
+                const bool front = y < m_width;
+                const Real px = (x / m_width - 0.5L) * 2 * m_half, py = (y / m_width - !front - 0.5L) * 2 * m_half;
                 const Real r = std::hypot(px, py);
                 if (r > std::min(m_half, kPi)) return kNoRay;
                 const Vector v = of_polar(r, std::atan2(py, px));
@@ -124,7 +134,7 @@ class Oracle {
     Plane point(const Vector& v) const {
         switch (m_projection) {
             case Projection::eac: {
-                const Real side = m_width / Real(3), eighth = kPi / 4;
+                const Real side = m_width / Real(3), down = m_height / Real(2), eighth = kPi / 4;
                 const bool level = std::fabs(v.y) <= std::max(std::fabs(v.x), std::fabs(v.z)) &&
                                    !(v.z < 0 && -v.z >= std::fabs(v.x));
                 const Vector w = level ? v : lower_row(v);
@@ -132,7 +142,7 @@ class Oracle {
                 const Real u = azimuth_of(w) - (column - 1) * kPi / 2;
                 const Real e = std::atan(std::tan(elevation_of(w)) / std::cos(u));
                 return {(column + 0.5L + u / (2 * eighth)) * side,
-                        ((level ? 0 : 1) + 0.5L + e / (2 * eighth)) * side};
+                        ((level ? 0 : 1) + 0.5L + e / (2 * eighth)) * down};
             }
             case Projection::dual_fisheye: {
                 const Real side = m_width / Real(2);
@@ -141,6 +151,13 @@ class Oracle {
                 if (polar_of(w) > m_half) return kNoPoint;
                 const Plane p = turned(polar_of(w), w);
                 return {(front + 0.5L + p.x / (2 * m_half)) * side, (0.5L + p.y / (2 * m_half)) * side};
+            }
+            case Projection::dual_fisheye_tb: {
+                const bool front = v.z > 0;
+                const Vector w = front ? v : Vector{-v.x, v.y, -v.z};
+                if (polar_of(w) > m_half) return kNoPoint;
+                const Plane p = turned(polar_of(w), w);
+                return {(0.5L + p.x / (2 * m_half)) * m_width, (!front + 0.5L + p.y / (2 * m_half)) * m_width};
             }
             default:
                 break;
@@ -162,6 +179,12 @@ class Oracle {
                 return r > 1 ? kNoRay : of_polar(std::asin(r), around);
             case Projection::equisolid:
                 return r > 2 ? kNoRay : of_polar(2 * std::asin(r / 2), around);
+            case Projection::mirror_ball:
+                return r > 2 ? kNoRay : reflected(r / 2, around);
+            case Projection::unified: {
+                const Real t = pannini_azimuth(r);
+                return r > edge_of_sphere() ? kNoRay : of_polar(t, around);
+            }
             case Projection::sinusoidal:
                 if (std::fabs(y) > kPi / 2 || std::fabs(x) > m_half * std::cos(y)) return kNoRay;
                 return of_angles(x / std::cos(y), y);
@@ -196,6 +219,14 @@ class Oracle {
                 return t > kPi / 2 ? kNoPoint : turned(std::sin(t), v);
             case Projection::equisolid:
                 return turned(2 * std::sin(t / 2), v);
+            case Projection::mirror_ball: {
+                // The normal of the ball is halfway between the ray and the way back to the camera.
+                const Vector n = unit({v.x, v.y, v.z - 1});
+                return {2 * n.x, 2 * n.y};
+            }
+            case Projection::unified:
+                return t >= pannini_end() ? kNoPoint
+                                          : turned((m_d + 1) * std::sin(t) / (m_d + std::cos(t)), v);
             case Projection::sinusoidal:
                 return {a * std::cos(e), e};
             case Projection::hammer: {
@@ -217,6 +248,15 @@ class Oracle {
                 return kNoPoint;
         }
     }
+
+    /// What a camera that looks along z sees in a ball of radius 1, at this distance from its middle.
+    static Vector reflected(Real r, Real around) {
+        const Real x = r * std::cos(around), y = r * std::sin(around), z = -std::sqrt(1 - r * r);
+        // d - 2 (d . n) n, with d = (0, 0, 1).
+        return {-2 * z * x, -2 * z * y, 1 - 2 * z * z};
+    }
+    /// The largest radius of the unified model: where the sphere's far side begins.
+    Real edge_of_sphere() const { return m_d > 1 ? (m_d + 1) / std::sqrt(m_d * m_d - 1) : HUGE_VALL; }
 
     /// Where X turns round, or has no end.
     Real pannini_end() const { return std::acos(-(m_d > 1 ? 1 / m_d : m_d)); }
@@ -261,6 +301,16 @@ const Case kCases[] = {
     {Projection::dual_fisheye, 40, 20, 120},
     {Projection::octahedral, 32, 32},
     {Projection::octahedral, 32, 32, 0, 1, PixelSpacing::centers},
+    {Projection::eac, 48, 18},
+    {Projection::mirror_ball, 31, 31},
+    {Projection::mirror_ball, 40, 30, 200},
+    {Projection::unified, 30, 20, 150},
+    {Projection::unified, 30, 20, 90, 0},
+    {Projection::unified, 25, 31, 100, 0.5},
+    {Projection::unified, 30, 20, 220, 1},
+    {Projection::unified, 30, 20, 160, 7},
+    {Projection::dual_fisheye_tb, 20, 40, 210},
+    {Projection::dual_fisheye_tb, 20, 40, 120},
     {Projection::equisolid, 31, 31, 360},
     {Projection::equisolid, 30, 20, 100},
 };

@@ -45,6 +45,7 @@ Quad width_of(Projection projection, double degrees, double d) {
         case Projection::rectilinear:
             return 2 * sine(angle / 2) / cosine(angle / 2);
         case Projection::equisolid:
+        case Projection::mirror_ball:
             return 4 * sine(angle / 4);
         case Projection::stereographic:
             return 4 * sine(angle / 4) / cosine(angle / 4);
@@ -53,7 +54,8 @@ Quad width_of(Projection projection, double degrees, double d) {
         case Projection::hammer:
             // k = sqrt(2 / (1 + cos(a / 2))) = 1 / cos(a / 4), at a of half the field of view.
             return 4 * sine(angle / 4) / cosine(angle / 8);
-        case Projection::pannini: {
+        case Projection::pannini:
+        case Projection::unified: {
             // cos of up to a half turn, by the half's.
             const Quad half = cosine(angle / 4);
             return 2 * (Quad(d) + 1) * (2 * sine(angle / 4) * half) / (Quad(d) + (2 * half * half - 1));
@@ -97,7 +99,7 @@ TEST(ProofConstants, WidthsOfPlanesAreAsWellKnownAsTheySay) {
         const FaceGrid faces = faces_of(projection);
         double nearest = 0;
         for (int i = 0; i < 2000; ++i) {
-            const double d = projection == Projection::pannini ? std::exp(6 * uniform(random) - 3) : 1;
+            const double d = has_distance(projection) ? std::exp(6 * uniform(random) - 3) : 1;
             Setting setting;
             setting.distance = d;
             const double most = with_projection(

@@ -295,5 +295,107 @@ TEST_F(Cameras, AreOnePicture) {
         "part.exr.pano?from=latlong&srccrop=320x160+250+30&yaw=170&pitch=20&fov=110&size=160x120", 50, 40);
 }
 
+// --- two eyes ---
+
+/// The pictures of two eyes above each other, or side by side, and how one is said to lie in them.
+void join_eyes(const std::string& left, const std::string& right) {
+    ASSERT_EQ(run("oiiotool " + left + " " + right + " --mosaic 1x2 -o above.exr").status, 0);
+    ASSERT_EQ(run("oiiotool " + left + " " + right + " --mosaic 2x1 -o beside.exr").status, 0);
+}
+
+// Each eye's picture is what its own file shows, seams, poles and pyramids included.
+TEST_F(Cameras, EyesSeeTheirOwnPart) {
+    ASSERT_EQ(run("oiiotool whole.exr --flop --mulc 0.5 -o right.exr").status, 0);
+    join_eyes("whole.exr", "right.exr");
+    for (const std::string view :
+         {"&to=rectilinear&fov=70&yaw=170&pitch=20&size=60x40", "&to=fisheye&fov=180&pitch=90&size=40",
+          "&to=equirectangular&yaw=33&size=50", "&to=rectilinear&fov=30&yaw=20&size=60x40&alpha=1"})
+        for (const std::string filter : {"antialias", "bicubic", "nearest"}) {
+            SCOPED_TRACE(view + " " + filter);
+            const std::string keys = view + "&from=latlong&filter=" + filter;
+            const std::vector<float> left = read_floats("whole.exr.pano?srcyaw=0" + keys),
+                                     right = read_floats("right.exr.pano?srcyaw=0" + keys);
+            for (const std::string stereo :
+                 {"above.exr.pano?stereo=top-bottom", "beside.exr.pano?stereo=side-by-side"}) {
+                EXPECT_EQ(largest_difference(read_floats(stereo + "&eye=left" + keys), left), 0) << stereo;
+                EXPECT_EQ(largest_difference(read_floats(stereo + "&eye=right" + keys), right), 0) << stereo;
+            }
+            std::vector<float> both = left;
+            both.insert(both.end(), right.begin(), right.end());
+            EXPECT_EQ(largest_difference(read_floats("above.exr.pano?stereo=top-bottom" + keys), both), 0);
+        }
+    const auto input = open("beside.exr.pano?stereo=side-by-side&from=latlong&to=rectilinear&size=60x40");
+    EXPECT_EQ(input->spec().width, 120);
+    EXPECT_EQ(input->spec().height, 40);
+    expect_one_picture("beside.exr.pano?stereo=side-by-side&from=latlong&to=rectilinear&size=60x40", 40, 5);
+    expect_one_picture("above.exr.pano?stereo=top-bottom&from=latlong&to=rectilinear&size=60x40", 10, 20);
+}
+
+TEST_F(Cameras, EyesAreRefusedWhereTheyCannotBe) {
+    EXPECT_THAT(open_error("whole.exr.pano?eye=left"), HasSubstr("must be given together with stereo"));
+    write_panorama("odd.exr", 64, 33);
+    EXPECT_THAT(open_error("odd.exr.pano?from=latlong&stereo=top-bottom"), HasSubstr("even height"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&stereo=top-bottom&output=stmap"),
+                HasSubstr("output"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&stereo=top-bottom&overscan=4"),
+                HasSubstr("must be of one eye"));
+}
+
+// --- faces ---
+
+// A face alone is that of the whole layout.
+TEST_F(Cameras, FacesStandAlone) {
+    const struct {
+        const char *to, *face;
+        int column, row;
+    } cases[] = {{"cubemap", "+x", 0, 0},       {"cubemap", "-x", 0, 1},       {"cubemap", "+y", 0, 2},
+                 {"cubemap", "-y", 0, 3},       {"cubemap", "+z", 0, 4},       {"cubemap", "-z", 0, 5},
+                 {"cubemap", "left", 0, 0},     {"cubemap", "up", 0, 2},       {"cubemap", "back", 0, 5},
+                 {"cubemap3x2", "right", 0, 0}, {"cubemap3x2", "left", 1, 0},  {"cubemap3x2", "up", 2, 0},
+                 {"cubemap3x2", "down", 0, 1},  {"cubemap3x2", "front", 1, 1}, {"cubemap3x2", "back", 2, 1},
+                 {"cubecross", "front", 1, 1},  {"cubecross", "up", 1, 0},     {"cubecross", "back", 3, 1}};
+    constexpr int kSide = 24;
+    const std::string view = "whole.exr.pano?from=latlong&yaw=20&pitch=10&tol=0.00001&filter=bilinear";
+    for (const auto& c : cases) {
+        SCOPED_TRACE(std::string(c.to) + " " + c.face);
+        const FaceGrid grid = faces_of(projection_from_name(c.to));
+        const int width = grid.columns * kSide;
+        const std::vector<float> layout =
+                                     read_floats(view + "&to=" + c.to + "&size=" + std::to_string(width)),
+                                 face = read_floats(view + "&to=" + c.to + "&face=" + c.face + "&size=24");
+        ASSERT_EQ(face.size(), 3u * kSide * kSide);
+        double most = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int i = 0; i < 3 * kSide; ++i) {
+                const int at = ((c.row * kSide + y) * width + c.column * kSide) * 3 + i;
+                most = std::max(most, double{std::fabs(face[static_cast<std::size_t>(3 * kSide * y + i)] -
+                                                       layout[static_cast<std::size_t>(at)])});
+            }
+        EXPECT_LT(most, 1e-4);
+    }
+    // By default as large as in the layout.
+    EXPECT_EQ(6 * open("whole.exr.pano?from=latlong&to=cubemap&face=+x")->spec().height,
+              open("whole.exr.pano?from=latlong&to=cubemap")->spec().height);
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&face=up"), HasSubstr("must be of to=cubemap"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap3x2&face=+x"),
+                HasSubstr("or of to=cubemap"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap&face=top"), HasSubstr("face"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap&face=up&size=20x30"), HasSubstr("square"));
+}
+
+// Films have equi-angular cubes in frames of 16:9.
+TEST_F(Cameras, EquiAngularCubesMayBeOblong) {
+    ASSERT_EQ(run("oiiotool 'whole.exr.pano?from=latlong&to=eac&size=192x108&tol=0.0001' -o film.exr").status,
+              0);
+    const std::string view = "&to=rectilinear&fov=60&yaw=40&pitch=-30&size=60x40&filter=bilinear&tol=0.0001";
+    EXPECT_LT(mean_difference(read_floats("film.exr.pano?from=eac" + view),
+                              read_floats("whole.exr.pano?from=latlong" + view)),
+              0.02);
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&size=191x108"),
+                HasSubstr("faces of equal size, 3 across"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap3x2&size=192x108"),
+                HasSubstr("square faces"));
+}
+
 }  // namespace
 }  // namespace anamorph

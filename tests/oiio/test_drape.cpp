@@ -169,5 +169,85 @@ TEST_F(DrapeFiles, KeyFramesAreAFilm) {
               read_pixels(film + "&frame=3").bytes);
 }
 
+// --- the far side ---
+
+TEST_F(DrapeFiles, TheFarSideHasItsOwnPicture) {
+    ASSERT_EQ(run("oiiotool page.exr --flip --mulc 0.5 -o back.exr").status, 0);
+    for (const std::string keys : {"", "&filter=bilinear", "&filter=nearest", "&shading=phong",
+                                   "&background=1,0.5,0", "&scheme=oka", "&overscan=5"}) {
+        SCOPED_TRACE(keys);
+        // From the front nothing of it is seen, from behind nothing else, the right way round.
+        EXPECT_EQ(read_floats("page.exr.drape?back=back.exr" + keys),
+                  read_floats("page.exr.drape?scale=1" + keys));
+        EXPECT_LT(largest_difference(read_floats("page.exr.drape?rotate=0,180,0&back=back.exr" + keys),
+                                     read_floats("back.exr.drape?scale=1" + keys)),
+                  1e-4);
+    }
+    // Without it, the front shows through.
+    ASSERT_EQ(run("oiiotool page.exr --flop -o flop.exr").status, 0);
+    EXPECT_LT(largest_difference(read_floats("page.exr.drape?rotate=0,180,0"), read_floats("flop.exr.drape")),
+              1e-4);
+}
+
+// A page that is rolled up shows both sides: which one, its source points tell.
+TEST_F(DrapeFiles, EachPixelShowsTheSideThatIsSeen) {
+    write_image(plain(48, 32, {1, 0, 0}), "red.exr");
+    write_image(plain(48, 32, {0, 0, 1}), "blue.exr");
+    constexpr int kWidth = 96, kHeight = 64;
+    for (const std::string keys : {"", "&filter=bilinear", "&alpha=1"}) {
+        SCOPED_TRACE(keys);
+        const std::string roll =
+            "red.exr.drape?surface=cylinder&angle=220&rotate=20,110,0&camera=0,0.2,1.2&size=96x64" + keys;
+        const std::vector<float> seen = read_floats(roll + "&back=blue.exr"),
+                                 st = read_floats(roll + "&output=stmap"),
+                                 cover = read_floats(roll + "&output=coverage");
+        const std::size_t channels = seen.size() / cover.size();
+        const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * kWidth + x); };
+        int sides[2] = {};
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const float *pixel = &seen[channels * at(x, y)], red = pixel[0], blue = pixel[2];
+                ASSERT_NEAR(red + blue, cover[at(x, y)], 1e-6) << x << " " << y;
+                if (x == 0 || y == 0 || x + 1 == kWidth || y + 1 == kHeight || red * blue != 0) continue;
+                // Where the four around lie near in the picture, they lie on one side.
+                const float *left = &st[2 * at(x - 1, y)], *right = &st[2 * at(x + 1, y)],
+                            *up = &st[2 * at(x, y - 1)], *down = &st[2 * at(x, y + 1)];
+                const float a = right[0] - left[0], b = down[0] - up[0], c = right[1] - left[1],
+                            d = down[1] - up[1];
+                const bool is_near =
+                    std::max({std::fabs(a), std::fabs(b), std::fabs(c), std::fabs(d)}) < 0.2f;
+                if (!is_near || left[0] < 0 || right[0] < 0 || up[0] < 0 || down[0] < 0) continue;
+                const bool shows_back = a * d - b * c < 0;
+                ASSERT_EQ(blue > 0, shows_back) << x << " " << y;
+                ++sides[shows_back ? 1 : 0];
+            }
+        EXPECT_GT(sides[0], 200);
+        EXPECT_GT(sides[1], 200);
+        expect_one_picture(roll + "&back=blue.exr", 20, 10);
+    }
+}
+
+TEST_F(DrapeFiles, TheFarSideIsRefusedWhereItDoesNotFit) {
+    write_image(plain(24, 32, {1, 0, 0}), "narrow.exr");
+    write_image(plain(48, 32, {1}), "grey.exr");
+    EXPECT_THAT(open_error("page.exr.drape?back=narrow.exr"),
+                HasSubstr("is 24x32 with 3 channels: must be as src, 48x32"));
+    EXPECT_THAT(open_error("page.exr.drape?back=grey.exr"),
+                HasSubstr("is 48x32 with 1 channels: must be as src"));
+    EXPECT_THAT(open_error("page.exr.drape?back=nothing.exr"), HasSubstr("nothing.exr"));
+    EXPECT_THAT(open_error("page.exr.drape?back=page.exr&scheme=hardware"),
+                HasSubstr("must not be given with scheme=hardware"));
+    // In memory it is a file as well.
+    const ImageBuf page("page.exr");
+    ImageBuf from_memory;
+    ASSERT_TRUE(drape(from_memory, page, options({{"back", "narrow.exr"}})) == false);
+    EXPECT_THAT(from_memory.geterror(), HasSubstr("must be as src"));
+    ASSERT_EQ(run("oiiotool page.exr --flip -o back.exr").status, 0);
+    ImageBuf turned;
+    ASSERT_TRUE(drape(turned, page, options({{"back", "back.exr"}, {"rotate", "0,180,0"}})))
+        << turned.geterror();
+    EXPECT_EQ(bytes(turned), read_pixels("page.exr.drape?back=back.exr&rotate=0,180,0").bytes);
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -49,7 +49,8 @@ PlanOptions options_of(const Picture& outer, const PlanOptions& a, const PlanOpt
     PlanOptions options = b;
     if (a.scheme == Scheme::exact) options.scheme = Scheme::exact;
     options.tol = std::min(a.tol, b.tol);
-    options.cull = b.cull && outer.output == Output::color;
+    options.cull = b.cull && (outer.output == Output::color || outer.output == Output::coverage);
+    options.overscan = a.overscan;
     return options;
 }
 
@@ -71,6 +72,7 @@ Joined joined_picture(const Picture& outer, const Picture& inner, const Box& sho
     picture.maps[0].blocks =
         std::make_shared<const ChainPlan>(map, options_of(outer, from->options(), to->options()));
     picture.maps[0].layers = inner.maps[0].layers;
+    picture.adds_alpha |= inner.adds_alpha;
     return {std::move(picture), ""};
 }
 

@@ -43,7 +43,7 @@ struct Length {
     double error;
 };
 
-/// Twice the distance in the plane from straight ahead to the direction half of `degrees` above it. No number where there is none.
+/// Twice the distance in the plane from its middle to the direction half of `degrees` above it. No number where there is none.
 Length height_of(Projection projection, double degrees, const Setting& setting) {
     const long double half = std::numbers::pi_v<long double> / 180 * degrees / 2;
     const long double s = std::sin(half), c = degrees == 180 ? 0 : std::cos(half);
@@ -56,8 +56,9 @@ Length height_of(Projection projection, double degrees, const Setting& setting) 
         return r;
     };
     return with_projection(projection, [&](auto formulas) -> Length {
-        const Point<long double> p = formulas.point(Ray<long double>{0, -s, c}, setting);
-        const Point<R> bound = formulas.point(Ray<R>{R(0), rounded(-s), rounded(c)}, setting);
+        const long double z = formulas.looks_back ? -c : c;
+        const Point<long double> p = formulas.point(Ray<long double>{0, -s, z}, setting);
+        const Point<R> bound = formulas.point(Ray<R>{R(0), rounded(-s), rounded(z)}, setting);
         return {2 * std::fabs(p.y), 2 * bound.y.error};
     });
 }
@@ -72,17 +73,20 @@ double most_vfov(Projection projection) {
 // Heights of the plane that are taken for endless.
 constexpr double kEndless = 1e17;
 
-/// The faces of a layout at their places. Throws Error unless they are square.
+/// The faces of a layout at their places. Throws Error unless they are as large as each other, and square but where they need not be.
 std::vector<Piece> face_pieces(Projection projection, int width, int height, const std::string& parameter) {
     const FaceGrid grid = faces_of(projection);
-    if (width % grid.columns != 0 || height % grid.rows != 0 || width / grid.columns != height / grid.rows)
+    const bool may_be_oblong =
+        with_projection(projection, [](auto formulas) { return formulas.has_oblong_faces; });
+    const int w = width / grid.columns, h = height / grid.rows;
+    if (w * grid.columns != width || h * grid.rows != height || (w != h && !may_be_oblong))
         throw Error(parameter, std::to_string(width) + "x" + std::to_string(height),
-                    std::string(name_of(projection)) + " needs square faces, " +
+                    std::string(name_of(projection)) + " needs " +
+                        (may_be_oblong ? "faces of equal size, " : "square faces, ") +
                         std::to_string(grid.columns) + " across and " + std::to_string(grid.rows) + " down");
-    const int n = width / grid.columns;
     std::vector<Piece> pieces;
     for (const Face& f : with_projection(projection, [](auto formulas) { return formulas.faces(); }))
-        pieces.push_back({{f.column * n, f.row * n, (f.column + 1) * n, (f.row + 1) * n}, f.axes, f.toward});
+        pieces.push_back({{f.column * w, f.row * h, (f.column + 1) * w, (f.row + 1) * h}, f.axes, f.toward});
     return pieces;
 }
 
@@ -133,6 +137,10 @@ double natural_aspect(Projection projection, double fov) {
 bool rows_turn(Projection projection) {
     return with_projection(
         projection, [](auto formulas) { return formulas.counted == Counted::azimuth && formulas.closes; });
+}
+
+bool has_distance(Projection projection) {
+    return with_projection(projection, [](auto formulas) { return formulas.has_distance; });
 }
 
 double Chart::default_fov(Projection projection) {
@@ -235,7 +243,9 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     const long double plane =
         with_projection(m_projection, [&](auto formulas) { return formulas.width(m_fov, m_setting); });
     m_setting.half_width = static_cast<double>(plane / 2);
-    long double across = columns / plane, down = across;
+    const bool has_square_plane = m_pieces.size() > 1 && columns != rows;
+    long double plane_down = has_square_plane ? plane : plane / columns * rows;
+    long double across = columns / plane, down = has_square_plane ? rows / plane : across;
     if (m_spacing == PixelSpacing::centers) {
         if (columns < 2 || rows < 2)
             throw Error(size_name(prefix), std::to_string(m_width) + "x" + std::to_string(m_height),
@@ -244,12 +254,11 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
         const FaceGrid grid = faces_of(m_projection);
         const int faces_across = grid.joined ? grid.columns : 1, faces_down = grid.joined ? grid.rows : 1;
         across = (columns * faces_across - 1) / (plane * faces_across);
-        down = (rows * faces_down - 1) / (plane * rows / columns * faces_down);
+        down = (rows * faces_down - 1) / (plane_down * faces_down);
     }
     const double units =
         with_projection(m_projection, [&](auto formulas) { return formulas.width_units(m_fov, m_setting); });
     double error_down = units * Rounded<long double>::kUnit;  // relative
-    long double plane_down = plane / columns * rows;
     if (m_vertical.fov != 0) {
         const Length height = height_of(m_projection, m_vertical.fov, m_setting);
         plane_down = height.value;
@@ -282,13 +291,13 @@ void Chart::set_branches() {
         const double tangent = formulas.largest_tangent(
             0.5 * m_width / scale_x(), std::max(std::fabs(middle), std::fabs(m_height - middle)) / scale_y());
         m_setting.reach = kFarOut * std::max(1.0, tangent);
-        const int across = m_pieces[0].box.width();
+        const int across = m_pieces[0].box.width(), down = m_pieces[0].box.height();
         const bool joined = faces_of(m_projection).joined;
         for (std::size_t i = 0; i < m_pieces.size(); ++i) {
             const Box& box = m_pieces[i].box;
             Branch b{m_setting, static_cast<int>(i), m_pieces[i].axes};
             b.centre_x = box.x0 < across ? -formulas.face_centre : formulas.face_centre;
-            b.centre_y = box.y0 < across ? -formulas.face_centre : formulas.face_centre;
+            b.centre_y = box.y0 < down ? -formulas.face_centre : formulas.face_centre;
             // Of joined faces the middle of all stands for (0, 0), without rounding: sides and scales are multiples of 1/2.
             b.pixel_x = joined ? 0.5 * m_width + b.centre_x * scale_x() : 0.5 * (box.x0 + box.x1);
             b.pixel_y = joined ? 0.5 * m_height + b.centre_y * scale_y() : 0.5 * (box.y0 + box.y1);

@@ -72,11 +72,13 @@ inline bool has_faces(Projection projection) {
 }
 /// Are the rows of a projection's picture circles around the vertical axis, and those of 360 degrees closed?
 bool rows_turn(Projection projection);
+/// Does a projection's picture depend on the distance d?
+bool has_distance(Projection projection);
 /// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
 /// The width of the plane that a horizontal field of view in degrees covers, in radians, tangents and so on, as the projection's formulas
-/// have it. 0 where there is none. `d`: the distance of the Pannini projection.
+/// have it. 0 where there is none. `d`: the distance of the Pannini projection and of the unified model.
 double plane_width(Projection projection, double fov, double d = 1);
 double plane_height(Projection projection, double vfov, double d = 1);  ///< The height, of a vertical one.
 /// The horizontal field of view that covers a width of the plane, at most what the projection shows.
@@ -111,7 +113,7 @@ struct Branch : Setting {
 /// A flat picture of directions: a projection, its field of view and its pixels.
 class Chart {
   public:
-    /// The largest value of Pannini's d.
+    /// The largest value of d.
     static constexpr double kMostDistance = 1000;
 
     /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
@@ -133,7 +135,7 @@ class Chart {
     int height() const { return m_height; }
     double fov() const { return m_fov; }
     const VerticalField& vertical() const { return m_vertical; }
-    /// Pannini's distance d.
+    /// The distance d of the Pannini projection and of the unified model.
     double distance() const { return m_setting.distance.d; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }

@@ -31,7 +31,8 @@ const std::vector<KindOfLens>& kinds() {
         {ptlens, "ptlens", {"a", "b", "c", "d", "e"}},
         {brown, "brown", {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "d", "e"}},
         {three_de4, "3de4", {"k1", "k2", "d", "e"}},
-        {kb4, "kb4", {"k1", "k2", "k3", "k4", "d", "e"}}};
+        {kb4, "kb4", {"k1", "k2", "k3", "k4", "d", "e"}},
+        {division, "division", {"k1", "k2", "d", "e"}}};
     return all;
 }
 const KindOfLens& kind_of(LensModel::Kind kind) {
@@ -140,9 +141,10 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
                         (model.kind == brown ? "rectilinear" : "fisheye") + " picture, not " + projection);
     set_terms();
     const long double smaller = std::min(plane.half_width, plane.half_height);
-    const long double unit = model.kind == ptlens      ? smaller
-                             : model.kind == three_de4 ? std::hypot(plane.half_width, plane.half_height)
-                                                       : 1;
+    const bool by_diagonal = model.kind == three_de4 || model.kind == division;
+    const long double unit = model.kind == ptlens ? smaller
+                             : by_diagonal        ? std::hypot(plane.half_width, plane.half_height)
+                                                  : 1;
     const long double d = model.values[model.values.size() - 2] * plane.per_x,
                       e = model.values[model.values.size() - 1] * plane.per_y;
     m_terms.unit = unit == 1 ? Constant(1, 0) : Constant(unit);
@@ -207,6 +209,9 @@ void Lens::set_terms() {
         terms.mx = v[7];
         terms.my = v[6];
         terms.tangential = terms.mx != 0 || terms.my != 0;
+    } else if (m_model.kind == division) {
+        terms.to_observed = false;
+        terms.under_count = powers(terms.under, 0, 2);
     } else {
         terms.to_observed = m_model.kind == kb4;
         terms.over_count = powers(terms.over, 0, m_model.kind == kb4 ? 4 : 2);

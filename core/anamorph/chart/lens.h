@@ -14,6 +14,8 @@
 //            decentering. Unit: half of the picture's diagonal. For projections with an axis.
 //   kb4      ideal to observed, r = t the angle from the axis, v = u (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8); Kannala
 //            and Brandt 2006, OpenCV's fisheye. Unit: the focal length. For equidistant fisheyes.
+//   division observed to ideal, v = u / (1 + k1 r^2 + k2 r^4); Fitzgibbon 2001 with k1 alone. Unit: half of the picture's
+//            diagonal. For projections with an axis.
 //
 // The lens's centre stands d pixels right of the picture's middle and e below it; the axis of sight meets the plane
 // there. The focal length is that of the field of view without distortion.
@@ -41,7 +43,7 @@ namespace anamorph {
 /// A model of lens distortion and its parameters.
 struct LensModel {
     /// The models described at the head of this file.
-    enum class Kind { none, ptlens, brown, three_de4, kb4 };
+    enum class Kind { none, ptlens, brown, three_de4, kb4, division };
     Kind kind = Kind::none;
     /// The values of the model, in the order of names().
     std::vector<double> values;

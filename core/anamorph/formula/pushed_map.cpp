@@ -32,8 +32,10 @@ Linear<Interval> bend_of(const Point<BoundJet>& g) {
 }  // namespace
 
 PushedMap::PushedMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source,
-                     std::size_t most_parts, PushedSheets::NamePlace place)
-    : m_target(target), m_sheets({std::move(formula), picture, target}, target, source, most_parts, place) {}
+                     std::size_t most_parts, PushedSheets::NamePlace place, const Size& overscan)
+    : m_target(target),
+      m_sheets({std::move(formula), picture, target}, widened({0, 0, target.width, target.height}, overscan),
+               source, most_parts, place) {}
 
 PushedMap::Local PushedMap::local_around(double x, double y, int) const {
     const Preimages all = preimages(x, y);

@@ -54,10 +54,11 @@ class PushedMap {
         mutable std::optional<Roots> roots = {};
     };
 
-    /// `formula`: target pixels of a picture of size `picture`, at source pixels. `target`: the pixels that the picture has.
-    /// Throws Error as PushedSheets does.
+    /// `formula`: target pixels of a picture of size `picture`, at source pixels. `target`: the pixels that the picture has,
+    /// and `overscan` those beyond its edges. Throws Error as PushedSheets does.
     PushedMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source,
-              std::size_t most_parts = kMostParts, PushedSheets::NamePlace place = PushedSheets::pixel_name);
+              std::size_t most_parts = kMostParts, PushedSheets::NamePlace place = PushedSheets::pixel_name,
+              const Size& overscan = {});
 
     Size target_size() const { return m_target; }
     Size source_size() const { return m_sheets.source_size(); }

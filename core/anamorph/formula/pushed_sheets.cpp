@@ -253,14 +253,14 @@ std::string PushedSheets::pixel_name(const Point<double>& source) {
            std::to_string(std::lround(source.y));
 }
 
-PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size& source,
+PushedSheets::PushedSheets(PushedFormula formula, const Box& target, const Size& source,
                            std::size_t most_parts, NamePlace name_place)
     : m_formula(std::move(formula)),
       m_source(source),
       m_most_visits(static_cast<int>(std::min(most_parts, kMostVisits))) {
     const Cell whole(*this, true);
     SheetCutter cutter(
-        {0, 0, double(target.width), double(target.height)},
+        {double(target.x0), double(target.y0), double(target.x1), double(target.y1)},
         {kFoldSize, kMostCuts, most_parts, kMostTorn, kForeseen * static_cast<double>(most_parts)});
     if (!cutter.cut(whole)) {
         const std::string place =

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "anamorph/formula/pushed_formula.h"
+#include "anamorph/geometry/box.h"
 #include "anamorph/plan/sheets.h"
 
 namespace anamorph {
@@ -19,9 +20,9 @@ class PushedSheets {
   public:
     /// A function that says what errors call a source point.
     using NamePlace = std::string (*)(const Point<double>& source);
-    /// Throws Error where the formula folds, jumps or ends at so many places that the source would be cut
-    /// into more than `most_parts`. No more are looked at for one point.
-    PushedSheets(PushedFormula formula, const Size& target, const Size& source, std::size_t most_parts,
+    /// `target`: the target pixels whose source points are wanted. Throws Error where the formula folds, jumps or ends at so
+    /// many places that the source would be cut into more than `most_parts`. No more are looked at for one point.
+    PushedSheets(PushedFormula formula, const Box& target, const Size& source, std::size_t most_parts,
                  NamePlace name_place = pixel_name);
     /// Names a source point by its pixel: "source pixel 12,40".
     static std::string pixel_name(const Point<double>& source);

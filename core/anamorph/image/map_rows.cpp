@@ -18,7 +18,7 @@ class PointRow {
   public:
     /// Row j of `part` of the block.
     PointRow(const BlockMap& map, const Block& block, const BlockPoints& points, const Box& part, int j)
-        : m_map(map), m_block(block), m_first(part.x0 + 0.5), m_y(j + 0.5) {
+        : m_map(map), m_block(block), m_first(part.x0), m_y(j + 0.5) {
         if (in_double(block)) {
             m_exact.read(map, block, j - block.box.y0, j - block.box.y0 + 1);
         } else if (block.kind == Block::Kind::computed) {
@@ -29,11 +29,11 @@ class PointRow {
             block_row(map, block, part, j, m_room[0], m_room[1]);
     }
 
-    double x(int i) const { return m_first + i; }
+    double x(int i) const { return m_first + i + 0.5; }
     double y() const { return m_y; }
     Found operator()(int i) const {
         if (in_double(m_block)) {
-            const auto k = static_cast<int>(m_first) - m_block.box.x0 + i;
+            const int k = m_first - m_block.box.x0 + i;
             const std::int32_t piece = m_exact.piece(0)[k];
             const bool seen =
                 m_block.kind == Block::Kind::exact ? piece >= 0 : m_map.seen(x(i), m_y, m_block.piece);
@@ -47,7 +47,8 @@ class PointRow {
   private:
     const BlockMap& m_map;
     const Block& m_block;
-    double m_first, m_y;
+    int m_first;
+    double m_y;
     alignas(64) float m_room[2][simd::kRowRoom];
     const float *m_px = m_room[0], *m_py = m_room[1];
     PointsInDouble m_exact;

@@ -21,6 +21,25 @@ std::string text_of(const Size& size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
+/// What a source covers: 1 wherever it has texels. Keeps a reference to it.
+class CoverageSource final : public Source {
+  public:
+    explicit CoverageSource(const Source& of) : m_of(of) {}
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 1; }
+    int levels() const noexcept override { return m_of.levels(); }
+    Size size(int level) const noexcept override { return m_of.size(level); }
+    Box extent(int level) const noexcept override { return m_of.extent(level); }
+    bool read(int, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept override {
+        for (int y = 0; y < box.height(); ++y)
+            std::fill_n(reinterpret_cast<float*>(texels + y * row_stride), box.width(), 1.0f);
+        return true;
+    }
+
+  private:
+    const Source& m_of;
+};
+
 /// A source has the size that the map was made for, and the channels of `first`, if there is one.
 void check_source(const std::string& name, const Source* source, const Chart& chart, const Source* first) {
     if (!source) throw Error("a picture in colour needs a source: " + name + " is missing");
@@ -267,7 +286,7 @@ bool Picture::reads(int source) const {
 int Picture::channels(const Source* first) const {
     if (!shows_color()) return !value && is_stmap(output) ? 2 : 1;
     if (!first) throw Error("a picture in colour needs a source");
-    return first->channels();
+    return first->channels() + (adds_alpha ? 1 : 0);
 }
 
 Reached Picture::reached(const ParallelFor& parallel_for) const {
@@ -283,13 +302,43 @@ Reached Picture::reached(const ParallelFor& parallel_for) const {
     return all;
 }
 
+Picture Picture::of_coverage() const {
+    Picture coverage = *this;
+    coverage.output = Output::color;
+    coverage.adds_alpha = false;
+    coverage.overlay = {};
+    coverage.same_as = {};
+    for (Map& map : coverage.maps)
+        for (Layer& layer : map.layers) layer.border = Border(layer.border.chart(), Wrap::automatic);
+    return coverage;
+}
+
 bool Picture::draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
                    const ParallelFor& parallel_for) const {
+    const bool shows_alpha = adds_alpha && shows_color();
+    if (!shows_alpha && (value || output != Output::coverage))
+        return draw_pixels(sources, box, view, parallel_for);
+    std::deque<CoverageSource> covers;
+    std::vector<const Source*> covered;
+    for (const Source* source : sources) covered.push_back(source ? &covers.emplace_back(*source) : nullptr);
+    const Picture coverage = of_coverage();
+    if (!shows_alpha) return coverage.draw_pixels(covered, box, view, parallel_for);
+    check(*this, sources, view);
+    Picture colors = *this;
+    colors.adds_alpha = false;
+    const int last = view.channels - 1;
+    const bool ok = colors.draw_pixels(sources, box, channels_of(view, 0, last), parallel_for);
+    return coverage.draw_pixels(covered, box, channels_of(view, last, 1), parallel_for) && ok;
+}
+
+bool Picture::draw_pixels(const std::vector<const Source*>& sources, const Box& of_picture,
+                          const ImageView& view, const ParallelFor& parallel_for) const {
     const Source* first = check(*this, sources, view);
+    const Box box = moved(of_picture, -overscan.width, -overscan.height);
     const Canvas canvas(view, box);
     const BlockMap& map = *maps.front().blocks;
     if (!map.covers(box)) canvas.fill(box, !value && is_stmap(output) ? -1.0f : 0.0f);
-    const Box inside = intersection(box, {0, 0, width(), height()});
+    const Box inside = intersection(box, widened({0, 0, width(), height()}, overscan));
     std::atomic<bool> ok{true};
     if (value) {
         for_each_square(inside, parallel_for, [&](const Box& square) {

@@ -22,8 +22,9 @@ namespace anamorph {
 /// What is drawn: colour; the source point as (u, v), v down, (-1, -1) where there is none; the distance of
 /// the source point used from the exact one; its proven bound; the source point with v up. Distances in source
 /// pixels, of several layers the largest. u and v are in 0..1 on the source: across the seam of one that closes they start anew. Points
-/// beyond the edges of any other have values beyond; what is read there is the border's affair.
-enum class Output { color, stmap, error, bound, stmap_up };
+/// beyond the edges of any other have values beyond; what is read there is the border's affair. coverage: how much of what the
+/// filter takes for a pixel is the source's own, 0 to 1, whatever the border says, of several layers by their weights.
+enum class Output { color, stmap, error, bound, stmap_up, coverage };
 
 /// Is the source point drawn?
 constexpr bool is_stmap(Output output) {
@@ -37,7 +38,8 @@ constexpr double v_of(Output output, double down) {
 /// Is nothing drawn where all that a pixel would read lies beyond the source's edges? Source points go on there, and so do
 /// their errors and bounds.
 constexpr bool ends_at_edges(Wrap wrap, Output output) {
-    return (wrap == Wrap::automatic || wrap == Wrap::black) && output == Output::color;
+    return ((wrap == Wrap::automatic || wrap == Wrap::black) && output == Output::color) ||
+           output == Output::coverage;
 }
 
 /// Pixels of a box of the picture, row by row.
@@ -75,6 +77,8 @@ struct Picture {
     std::vector<Map> maps;
     Filter filter = Filter::antialias;
     Output output = Output::color;
+    /// Has colour one channel more than the sources, the last: their coverage?
+    bool adds_alpha = false;
     /// A function of each pixel's centre that the picture shows, in one channel, in place of `output`, where
     /// it is given.
     std::function<float(double x, double y)> value;
@@ -82,6 +86,9 @@ struct Picture {
     std::function<void(const PixelRows& pixels)> overlay;
     /// A source that is the picture as it stands, pixel for pixel and whatever the filter.
     std::optional<int> same_as;
+    /// How many pixels beyond its edges the picture has (overscan), across and down, on either side: its pixels are counted from
+    /// there on, those of its maps from its own corner.
+    Size overscan = {};
     /// The number of sources, null or not, that draw() has to be given, where it is fixed.
     std::optional<int> source_count = {};
     /// Finds what the picture says of itself, over all of it, beyond what was reached.
@@ -96,8 +103,8 @@ struct Picture {
     bool shows_color() const { return !value && output == Output::color; }
     /// Are colours of this source read?
     bool reads(int source) const;
-    /// Channels of the picture: those of the sources, of which `first` is one, for colour; 2 for stmap; else
-    /// 1. Throws Error where colour lacks a source.
+    /// Channels of the picture: those of the sources, of which `first` is one, for colour, and alpha where it is added; 2 for
+    /// stmap; else 1. Throws Error where colour lacks a source.
     int channels(const Source* first) const;
 
     /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the
@@ -105,7 +112,7 @@ struct Picture {
     Reached reached(const ParallelFor& parallel_for = serial_for) const;
 
     /// Draws the pixels of `box` (of the picture) to `view`, whose pixel (0, 0) is (box.x0, box.y0). Sources
-    /// that no layer names may be null, and all but for colour. False when one could not be read: the picture
+    /// that no layer names may be null, and all but for colour and coverage. False when one could not be read: the picture
     /// is then incomplete. Throws Error where sizes, channels or the number of sources do not fit.
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for = serial_for) const;
@@ -114,6 +121,12 @@ struct Picture {
               const ParallelFor& parallel_for = serial_for) const {
         return draw(std::vector<const Source*>{source}, box, view, parallel_for);
     }
+
+  private:
+    /// The picture of the sources' coverage, as a colour.
+    Picture of_coverage() const;
+    bool draw_pixels(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+                     const ParallelFor& parallel_for) const;
 };
 
 /// A picture of one source, seen through a map of one layer.

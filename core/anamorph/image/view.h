@@ -37,6 +37,13 @@ using ImageView = BasicView<std::byte>;
 /// A view of pixels to read.
 using ConstImageView = BasicView<const std::byte>;
 
+/// Channels [first, first + count) of a view.
+inline ImageView channels_of(ImageView view, int first, int count) {
+    view.data += first * size_of(view.type);
+    view.channels = count;
+    return view;
+}
+
 /// A packed view of `data`.
 template <class Byte>
 BasicView<Byte> packed_view(Byte* data, PixelType type, int width, int height, int channels) {

@@ -96,6 +96,8 @@ struct ControlPoints {
     };
     Units units = Units::pixels;
     std::vector<Pair> pairs;
+    /// Pixels of the target on either side, across and down, that do not count for how the map goes on beyond the points.
+    Size overscan = {};
 };
 
 /// A warp as its author gives it. `name` is what messages call it (a file's name).

@@ -21,6 +21,8 @@ struct MeshWarpOptions {
     /// the source turned over (its Jacobian's determinant has the other sign than that of most of the mesh),
     /// and for a mesh that pushes the number of further source points that land on the pixel.
     bool folds = false;
+    /// Has colour a channel more, of how much of a pixel the source covers (Picture::adds_alpha)?
+    bool adds_alpha = false;
     double amount = 1;  ///< blends vertices from the identity (0) to the warp (1) and beyond; finite
 };
 

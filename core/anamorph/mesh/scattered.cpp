@@ -391,10 +391,14 @@ Scattered::Scattered(const ControlPoints& points, const Size& from, const Size& 
 
     // Four further points, far outside, on the best affine map.
     const Affine affine = best_affine(nodes);
-    Bounds box{0, 0, double(from.width), double(from.height)};
+    const Size& beyond = points.overscan;
+    const Bounds picture{0, 0, double(from.width), double(from.height)};
+    Bounds box{double(beyond.width), double(beyond.height), double(from.width - beyond.width),
+               double(from.height - beyond.height)};
     for (const Node& n : nodes) box.add({n.x(), n.y(), n.x(), n.y()});
     const double w = box.x1 - box.x0, h = box.y1 - box.y0;
     box = {box.x0 - w, box.y0 - h, box.x1 + w, box.y1 + h};
+    box.add(picture);
     for (const double x : {box.x0, box.x1})
         for (const double y : {box.y0, box.y1}) {
             const Vector at{Number(x), Number(y)};

@@ -10,8 +10,9 @@
 
 namespace anamorph {
 
-FeatureBlocks::FeatureBlocks(const FeatureMap& map, std::vector<int> shapes)
-    : BlockMap(map.target().width, map.target().height, {Box{0, 0, map.target().width, map.target().height}},
+FeatureBlocks::FeatureBlocks(const FeatureMap& map, std::vector<int> shapes, const Size& overscan)
+    : BlockMap(map.target().width, map.target().height,
+               {widened({0, 0, map.target().width, map.target().height}, overscan)},
                {.layers = static_cast<int>(shapes.size()), .region_side = kRegion, .kept_regions = 2048}),
       m_map(map),
       m_shapes(std::move(shapes)) {

@@ -29,8 +29,8 @@ class FeatureBlocks : public BlockMap {
   protected:
     static constexpr int kRegion = 128;
 
-    /// Keeps a reference to the map.
-    FeatureBlocks(const FeatureMap& map, std::vector<int> shapes);
+    /// Keeps a reference to the map. `overscan`: pixels beyond the edges of its picture.
+    FeatureBlocks(const FeatureMap& map, std::vector<int> shapes, const Size& overscan);
 
     const FeatureMap& map() const { return m_map; }
     int shape(int layer) const { return m_shapes[static_cast<std::size_t>(layer)]; }

@@ -95,6 +95,7 @@ std::vector<Picture::Map> maps_of(const std::shared_ptr<const FeatureMap>& map,
         if (color[static_cast<std::size_t>(k)] != 0) drawn.push_back(k);
     NearFarOptions near_far;
     near_far.tol = options.scheme == MorphScheme::exact && options.tol >= 0 ? 0 : options.tol;
+    near_far.overscan = options.overscan;
     std::vector<Picture::Map> maps;
     for (auto from = drawn.begin(); from != drawn.end(); from += static_cast<int>(near_far.shapes.size())) {
         near_far.shapes.assign(from, from + std::min<std::ptrdiff_t>(2, drawn.end() - from));
@@ -144,7 +145,9 @@ Picture morphed_picture(const std::shared_ptr<const Features>& features, const s
     picture.maps = maps_of(map, color, options);
     picture.filter = options.filter;
     picture.output = options.output;
-    picture.same_as = untouched(*map, shape, color);
+    picture.adds_alpha = options.adds_alpha;
+    picture.overscan = options.overscan;
+    if (options.overscan == Size{}) picture.same_as = untouched(*map, shape, color);
     picture.source_count = map->shapes();
     if (options.lines)
         picture.overlay = [features, map](const PixelRows& pixels) {

@@ -29,6 +29,9 @@ struct MorphOptions {
     /// unless this is given.
     std::optional<int> picture = {};
     bool lines = false;  ///< draws the features of every shape over the colours
+    /// Has colour a channel more, of how much of a pixel the pictures cover (Picture::adds_alpha)?
+    bool adds_alpha = false;
+    Size overscan = {};  ///< pixels beyond the edges of the picture, across and down, on either side
 
     static constexpr double kMostT = 1e6;
     double t = 0.5;                      ///< the shape's time: 0 is A's, 1 is B's; kMostT at most, either way

@@ -56,7 +56,8 @@ struct NearFar::State {
     }
 };
 
-NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) : FeatureBlocks(map, options.shapes) {
+NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options)
+    : FeatureBlocks(map, options.shapes, options.overscan) {
     check_tol(options.tol);
     m_state = std::make_unique<State>(map, options);
 }
@@ -73,7 +74,7 @@ void NearFar::plan(const Box& box, int, Blocks& blocks) const {
     auto subdivider = state.subdividers.take([&] {
         return std::make_unique<NearFarSubdivider>(state.map, state.options, state.chebyshev, state.slopes);
     });
-    subdivider->plan(box.x0, box.y0, *region);
+    subdivider->plan(region_corner(box.x0, kRegion), region_corner(box.y0, kRegion), *region);
     state.subdividers.give_back(std::move(subdivider));
 
     blocks.reserve(region->cells.size() * static_cast<std::size_t>(layers()));
@@ -115,9 +116,9 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
         field.k = degree;
         field.coefficients = region.coefficients.data() + cell.coefficients;
     }
-    // Regions stand on multiples of their size.
+    // Regions stand on multiples of their size, a power of two, before the picture as well.
     const auto from_center = [](int pixel, float center) {
-        return static_cast<float>(pixel % kRegion + 0.5 - kHalfRegion - static_cast<double>(center));
+        return static_cast<float>((pixel & (kRegion - 1)) + 0.5 - kHalfRegion - static_cast<double>(center));
     };
     simd::FieldOutput out{};
     out.x = from_center(part.x0, cell.frame.x);

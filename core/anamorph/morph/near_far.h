@@ -21,6 +21,8 @@ struct NearFarOptions {
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double
     /// The shapes whose maps are wanted, one or two of them, which become the layers.
     std::vector<int> shapes = {0, 1};
+    /// How many pixels beyond its edges the picture has, across and down, on either side.
+    Size overscan = {};
 };
 
 class NearFar final : public FeatureBlocks {

@@ -81,7 +81,7 @@ class NearFarSubdivider {
           m_options(options),
           m_chebyshev(chebyshev),
           m_slopes(slopes),
-          m_picture{0, 0, map.target().width, map.target().height},
+          m_picture(widened({0, 0, map.target().width, map.target().height}, options.overscan)),
           m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {}
 
     void plan(int x0, int y0, Region& region);

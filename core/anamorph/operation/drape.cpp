@@ -7,14 +7,13 @@
 #include <cmath>
 #include <optional>
 
-#include "anamorph/deform/key_frames_file.h"
 #include "anamorph/machine/block_machine_map.h"
 #include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/sequence.h"
 #include "anamorph/operation/solved.h"
-#include "anamorph/parameter/text_file.h"
 #include "anamorph/surface/drape.h"
 #include "anamorph/surface/drape_rows.h"
 
@@ -24,8 +23,6 @@ namespace {
 using rows::chosen;
 
 constexpr double kFarthest = 1e6;
-// A host that asks how many subimages there are looks at each.
-constexpr int kMostFrames = 100'000;
 
 Parameter vector(const char* name, std::string value, const std::string& doc) {
     Parameter row = rows::numbers(name, -rows::kInfinity, doc);
@@ -36,19 +33,9 @@ Parameter vector(const char* name, std::string value, const std::string& doc) {
 /// Which pictures there are.
 ParameterTable sequence_rows() {
     using namespace rows;
-    return {
-        whole("frames", "", "", 1, kMostFrames,
-              "as many subimages, frames 0, 1 and so on of the key frames; by default up to the last key "
-              "frame, and 1 without keys"),
-        whole("frame", "", "", 0, kMostFrames, "one frame alone"),
-        file("keys",
-             "key frames of any numbers here, and of keys that define names of formulas, JSON: {\"keys\": "
-             "{\"turn\": [[0, "
-             "0.1], "
-             "[24, 0.9]]}}, each a frame and its numbers; optional \"interpolation\": step, linear, "
-             "catmull_rom, or "
-             "monotone_cubic, the default"),
-    };
+    ParameterTable table = sequence(", and of keys that define names of formulas");
+    table.insert(table.begin() + 1, whole("frame", "", "", 0, Sequence::kMostFrames, "one frame alone"));
+    return table;
 }
 
 /// Where the surface is, and who sees it.
@@ -68,6 +55,7 @@ ParameterTable view_rows() {
         number("extent", "", "", 1e-6, kFarthest,
                "width of a parallel view; by default that of the flat picture"),
         size("width and height of the picture, or its width alone; by default the source's"),
+        overscan(),
         subimage(),
         tile(),
         mip(),
@@ -120,6 +108,10 @@ ParameterTable look_rows() {
         vector("background", "",
                "values of the channels behind the surface and where its picture's alpha lets through; by "
                "default nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
+        file("back",
+             "the picture on the far side of the surface, as large as src and with as many channels; seen "
+             "from "
+             "there it is the right way round; by default src, as it shows through"),
         image("backdrop",
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),
@@ -130,12 +122,16 @@ ParameterTable look_rows() {
              {"normal", surface::DrapeOutput::normal, "the unit normal on the viewer's side"},
              {"patch", surface::DrapeOutput::patch,
               "the number of the patch of the surface that is drawn, -1 where none is"},
-             {"coverage", surface::DrapeOutput::coverage,
+             {"coverage", Output::coverage,
               "the share of the pixel in which the surface is seen, by which its colours are faded at edges "
               "into the background, and 0 or 1 with the filters nearest, bilinear and bicubic, which fade "
               "nothing"},
              {"seen", surface::DrapeOutput::seen,
               "1 where the surface is seen in the pixel's middle, else 0"}}),
+        toggle("alpha", "0",
+               "1: where the picture has no alpha, what is drawn has one: the coverage, by which colors are "
+               "faded; "
+               "without background and backdrop"),
         flip_v(),
     };
 }
@@ -193,6 +189,10 @@ surface::DrapeOptions options_of(const ParameterValues& values) {
     options.wrap = chosen<Wrap>(values, "wrap");
     if (options.wrap == Wrap::automatic) options.wrap = Wrap::clamp;
     options.output = rows::chosen_output(values);
+    if (options.output == Output::coverage) {
+        options.output = Output::color;
+        options.own = surface::DrapeOutput::coverage;
+    }
     if (!rows::has_shared_output(values)) options.own = chosen<surface::DrapeOutput>(values, "output");
     options.lighting = {chosen<surface::DrapeShading>(values, "shading"),
                         drape_lights(values.numbers("light")),
@@ -219,7 +219,7 @@ std::optional<machine::BlockMachine> machine_of(const ParameterValues& values,
     if (options.own != surface::DrapeOutput::shared)
         throw Error("output", values.text("output"),
                     "must be color, stmap, error or bound with scheme=hardware");
-    for (const char* name : {"background", "backdrop"})
+    for (const char* name : {"background", "backdrop", "back"})
         if (values.given(name))
             throw Error(name, printable(values.text(name)), "must not be given with scheme=hardware");
     return machine;
@@ -236,48 +236,76 @@ void check_backdrop(const std::vector<SourceImage>& sources, const ParameterValu
     check_color_space(sources[1], "backdrop", sources[0], "src", values);
 }
 
+const char* const kBack = "picture/back";
+
+/// The picture on the far side, which is drawn.
+LinkedFiles linked_back(const ParameterValues&, const SideFiles& files, const SideFileReader&) {
+    const auto back = files.find("back");
+    if (back == files.end()) return {};
+    return {{kBack, back->second.name, true}};
+}
+
+/// It goes with the picture on this side.
+void check_back(const OperationInput& input) {
+    const auto back = input.files.find("back");
+    if (back == input.files.end()) return;
+    const SourceImage& front = input.sources[0];
+    const std::unique_ptr<SideImage> image = input.reader.image("back", back->second.name);
+    const Box shown = image->display();
+    const auto text = [](int width, int height, int channels) {
+        return std::to_string(width) + "x" + std::to_string(height) + " with " + std::to_string(channels) +
+               " channels";
+    };
+    const bool is_alike = shown.width() == front.facts.width && shown.height() == front.facts.height &&
+                          image->channels() == front.channels && image->alpha() == front.alpha;
+    if (!is_alike)
+        throw Error("back", printable(back->second.name),
+                    "is " + text(shown.width(), shown.height(), image->channels()) + ": must be as src, " +
+                        text(front.facts.width, front.facts.height, front.channels) +
+                        ", and alpha the same of them");
+}
+
 /// What is asked for, at any frame.
 class DrapeRequest {
   public:
     explicit DrapeRequest(const OperationInput& input)
-        : m_values(input.values),
+        : m_sequence(input),
           m_source(input.sources[0].size()),
           m_has_backdrop(input.sources.size() > 1),
+          m_has_back(input.values.given("back")),
           m_alpha(input.sources[0].alpha),
           m_backdrop_alpha(input.sources.size() > 1 ? input.sources[1].alpha : -1),
           m_surfaces(std::make_shared<DrapeSurfaces>(input, aspect())) {
         check_backdrop(input.sources, input.values);
-        if (const auto file = input.files.find("keys"); file != input.files.end())
-            read_keys(input.reader.text(file->second.name), file->second.name);
-        choose_frames();
+        check_back(input);
         // What does not depend on the size of the picture is checked now.
-        for (int i = 0; i < m_frames; ++i) check(number_of(i));
+        for (int i = 0; i < frames(); ++i) check(number_of(i));
     }
 
-    int frames() const { return m_frames; }
+    int frames() const { return m_sequence.frames(); }
     /// The number of the i-th of these.
-    int number_of(int i) const { return m_first + i; }
+    int number_of(int i) const { return static_cast<int>(m_sequence.time_of(i)); }
     bool has_backdrop() const { return m_has_backdrop; }
-    bool is_film() const { return m_frames > 1 || !m_keys.empty(); }
+    bool has_back() const { return m_has_back; }
+    bool is_film() const { return m_sequence.is_film(); }
 
     /// A frame's values.
-    ParameterValues values_at(int frame) const {
-        ParameterValues values = m_values;
-        values.set("frame", frame);
-        for (const NamedKeyFrames& keys : m_keys) values.set(keys.name, keys.frames.at(frame));
-        return values;
-    }
+    ParameterValues values_at(int frame) const { return m_sequence.values_at(frame); }
     Size target(const ParameterValues& values) const { return rows::size_of(values, m_source); }
     surface::DrapeOptions options(const ParameterValues& values) const {
         surface::DrapeOptions options = options_of(values);
         options.alpha = m_alpha;
         options.backdrop_alpha = m_backdrop_alpha;
+        options.overscan = rows::overscan_of(values, target(values));
         return options;
     }
     const std::string& missing() const { return m_surfaces->missing(); }
 
-    surface::Camera camera(const ParameterValues& values, const Size& screen) const {
-        return {pose_of(values, aspect()), matrix_of(values), vector_of(values, "move"), screen};
+    /// `shown`: the screen without overscan.
+    surface::Camera camera(const ParameterValues& values, const Size& shown) const {
+        const Size overscan = rows::overscan_of(values, target(values));
+        const Size screen{shown.width + 2 * overscan.width, shown.height + 2 * overscan.height};
+        return {pose_of(values, aspect()), matrix_of(values), vector_of(values, "move"), screen, overscan};
     }
     /// The machine of scheme hardware.
     std::optional<machine::BlockMachine> machine(const ParameterValues& values) const {
@@ -288,63 +316,40 @@ class DrapeRequest {
         const auto tree = m_surfaces->tree_of(m_surfaces->sum_of(values));
         return {tree, &tree->tree.surface()};
     }
-    surface::Drape drape(const ParameterValues& values, const Size& screen) const {
-        return {m_surfaces->tree_of(m_surfaces->sum_of(values)), camera(values, screen), m_source,
-                options(values)};
+    surface::Drape drape(const ParameterValues& values, const Size& shown,
+                         const surface::DrapeOptions& options) const {
+        return {m_surfaces->tree_of(m_surfaces->sum_of(values)), camera(values, shown), m_source, options};
+    }
+    /// Is the coverage to be added as alpha?
+    bool adds_alpha(const ParameterValues& values) const {
+        if (!rows::adds_alpha(values, m_alpha >= 0, true)) return false;
+        for (const char* name : {"background", "backdrop"})
+            if (values.given(name))
+                throw Error("alpha", "1", std::string("must not be given together with ") + name);
+        return true;
     }
 
   private:
     double aspect() const { return static_cast<double>(m_source.width) / m_source.height; }
 
-    void read_keys(const std::string& text, const std::string& name) {
-        m_keys = parse_key_frames_json(text, name);
-        for (const NamedKeyFrames& keys : m_keys) {
-            const ParameterTable& table = m_values.table();
-            const auto row = std::find_if(table.begin(), table.end(),
-                                          [&](const Parameter& p) { return p.name == keys.name; });
-            const bool number = row != table.end() &&
-                                (row->type == ParameterType::number || row->type == ParameterType::numbers);
-            const auto& own = m_values.definitions();
-            const bool defined =
-                std::any_of(own.begin(), own.end(), [&](const Assignment& a) { return a.key == keys.name; });
-            if ((!number || keys.name == "height_smooth") && !defined)
-                text_file::fail(name, printable(keys.name),
-                                "is no key of numbers (but for whole ones and height_smooth), and none "
-                                "that defines a name of a formula");
-        }
-    }
-    void choose_frames() {
-        if (m_values.given("frame") && m_values.given("frames"))
-            throw Error("frame", m_values.text("frame"), "must not be given together with frames");
-        double last = 0;
-        for (const NamedKeyFrames& keys : m_keys) last = std::max(last, keys.frames.times().back());
-        if (m_values.given("frame"))
-            m_first = m_values.whole("frame");
-        else if (m_values.given("frames"))
-            m_frames = m_values.whole("frames");
-        else if (last + 1 <= kMostFrames)
-            m_frames = static_cast<int>(last) + 1;
-        else
-            throw Error("frames is not given and the last key frame is " + shortest(last) +
-                        ": must be given where that is above " + std::to_string(kMostFrames - 1));
-    }
     void check(int frame) const {
         try {
             const ParameterValues values = values_at(frame);
             m_surfaces->sum_of(values);
             camera(values, target(values));
             machine(values);
+            rows::check_overscan(values);
+            adds_alpha(values);
         } catch (const Error& error) {
-            if (m_keys.empty()) throw;
+            if (!m_sequence.has_keys()) throw;
             throw Error("frame " + std::to_string(frame) + ": " + error.what());
         }
     }
 
-    ParameterValues m_values;
+    Sequence m_sequence;
     Size m_source;
-    bool m_has_backdrop;
-    int m_alpha, m_backdrop_alpha, m_frames = 1, m_first = 0;
-    std::vector<NamedKeyFrames> m_keys;
+    bool m_has_backdrop, m_has_back;
+    int m_alpha, m_backdrop_alpha;
     std::shared_ptr<const DrapeSurfaces> m_surfaces;
 };
 
@@ -356,7 +361,13 @@ PixelKind pixels_of(const surface::DrapeOptions& options) {
 /// A drape of the first source.
 class SolvedDrape final : public SolvedPicture {
   public:
-    explicit SolvedDrape(surface::Drape drape) : m_drape(std::move(drape)) {}
+    /// `request` says which sources there are. `coverage`: what is drawn to the last channel.
+    SolvedDrape(const DrapeRequest& request, surface::Drape drape,
+                std::optional<surface::Drape> coverage = {})
+        : m_drape(std::move(drape)),
+          m_coverage(std::move(coverage)),
+          m_has_backdrop(request.has_backdrop()),
+          m_has_back(request.has_back()) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         const Reached reached = m_drape.reached(parallel_for);
@@ -369,12 +380,22 @@ class SolvedDrape final : public SolvedPicture {
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
-        const auto source = [&](std::size_t i) { return i < sources.size() ? sources[i] : nullptr; };
-        return m_drape.draw(source(0), box, view, parallel_for, source(1));
+        const Source* const source = sources.empty() ? nullptr : sources[0];
+        const auto given = [&](bool is_given, std::size_t i) {
+            return is_given && i < sources.size() ? sources[i] : nullptr;
+        };
+        const Source *const backdrop = given(m_has_backdrop, 1), *const back = given(m_has_back,
+                                                                                     m_has_backdrop ? 2 : 1);
+        if (!m_coverage) return m_drape.draw(source, box, view, parallel_for, backdrop, back);
+        const int last = view.channels - 1;
+        const bool ok = m_drape.draw(source, box, channels_of(view, 0, last), parallel_for, nullptr, back);
+        return m_coverage->draw(nullptr, box, channels_of(view, last, 1), parallel_for) && ok;
     }
 
   private:
     surface::Drape m_drape;
+    std::optional<surface::Drape> m_coverage;
+    bool m_has_backdrop, m_has_back;
 };
 
 /// A drape of the first source by the machine of 1987.
@@ -424,24 +445,32 @@ class Drapes final : public Pictures {
         const int number = m_request->number_of(frame);
         const ParameterValues values = m_request->values_at(number);
         const std::optional<Size> size = level_size(m_request->target(values), level);
-        if (!size) return {};
         const surface::DrapeOptions options = m_request->options(values);
+        if (!size || (level > 0 && !(options.overscan == Size{}))) return {};
         PictureRequest picture;
         picture.size = *size;
+        picture.add_overscan(options.overscan);
         picture.pixels = pixels_of(options);
         // What the paper's blocks and its machine come to is no tolerance that they hold.
         if (values.text("scheme") == "auto" || values.text("scheme") == "exact")
             picture.says = {{"anamorph:tol", options.tol}};
         const bool plain = options.lighting.shading == surface::DrapeShading::none &&
-                           options.background.empty() && !m_request->has_backdrop();
+                           options.background.empty() && !m_request->has_backdrop() && !m_request->has_back();
         if (picture.pixels == PixelKind::color && options.filter == Filter::nearest && plain)
             picture.moves = 0;
         if (m_request->is_film()) picture.says.push_back({"anamorph:frame", number});
         if (!m_request->missing().empty()) picture.says.push_back({"anamorph:missing", m_request->missing()});
-        picture.solve = [request = m_request, values,
+        picture.adds_alpha = picture.pixels == PixelKind::color && m_request->adds_alpha(values);
+        picture.solve = [request = m_request, values, adds_alpha = picture.adds_alpha,
                          size = *size]() -> std::unique_ptr<const SolvedPicture> {
             if (request->machine(values)) return std::make_unique<SolvedByBlocks>(*request, values, size);
-            return std::make_unique<SolvedDrape>(request->drape(values, size));
+            surface::DrapeOptions of_picture = request->options(values);
+            if (!adds_alpha)
+                return std::make_unique<SolvedDrape>(*request, request->drape(values, size, of_picture));
+            surface::DrapeOptions of_coverage = of_picture;
+            of_coverage.own = surface::DrapeOutput::coverage;
+            return std::make_unique<SolvedDrape>(*request, request->drape(values, size, of_picture),
+                                                 request->drape(values, size, of_coverage));
         };
         return picture;
     }
@@ -472,15 +501,16 @@ std::vector<glm::dvec3> drape_lights(const std::vector<double>& numbers) {
 const Operation& drape_operation() {
     static const ParameterTable table = make_drape_table();
     static const Operation operation{
-        "drape",
-        "A picture laid on a surface in space",
-        &table,
-        {"src", "backdrop"},
-        1,
-        {"surface=cylinder&angle=120&camera=0.4,0.3,2.5", {}},
-        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+        .name = "drape",
+        .title = "A picture laid on a surface in space",
+        .parameters = &table,
+        .sources = {"src", "backdrop"},
+        .least_sources = 1,
+        .example = {"surface=cylinder&angle=120&camera=0.4,0.3,2.5", {}},
+        .make = [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
             return std::make_unique<Drapes>(std::make_shared<DrapeRequest>(input));
-        }};
+        },
+        .linked = linked_back};
     return operation;
 }
 

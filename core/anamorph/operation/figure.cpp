@@ -80,6 +80,7 @@ ParameterTable style_rows() {
     return {
         rows::size("width and height of the picture, or its width alone; by default 1000x1000, a pixel for "
                    "each unit of the script's window, which is as large as fits"),
+        overscan(),
         tile(),
         mip(),
         enumeration(
@@ -379,6 +380,7 @@ FigureRequest read_request(const ParameterValues& values) {
     FigureRequest request;
     request.size = rows::size_of(values, {kDefaultSide, kDefaultSide});
     figure::FigureLook& look = request.look;
+    look.overscan = rows::overscan_of(values, request.size);
     look.style = rows::chosen<figure::FigureStyle>(values, "style");
     look.light = read_light(values);
     look.antialias = values.toggle("antialias");
@@ -438,17 +440,21 @@ class Figures final : public Pictures {
 
     std::optional<PictureRequest> picture(int frame, int level) const override {
         const std::optional<Size> size = level_size(m_request.size, level);
-        if (!size) return {};
+        const Size& overscan = m_request.look.overscan;
+        if (!size || (level > 0 && !(overscan == Size{}))) return {};
         PictureRequest picture;
         picture.size = *size;
+        picture.add_overscan(overscan);
         const int number = m_frame ? *m_frame : m_film->number(frame);
         describe(picture, number);
-        picture.solve = [request = m_request, film = m_film, extent = m_extent, number, size = *size, level] {
+        picture.solve = [request = m_request, film = m_film, extent = m_extent, number, size = *size,
+                         all = picture.size, level] {
             figure::FigureFrame scene = film->frame(number);
             FigureRequest r = request;
             r.look.lines.line_width = std::ldexp(r.look.lines.line_width, -level);
-            const figure::View view = r.view_of(scene, *extent, size);
-            return std::make_unique<SolvedFigure>(figure::FigurePicture(std::move(scene), view, size, r.look),
+            figure::View view = r.view_of(scene, *extent, size);
+            view.middle += glm::dvec2(r.look.overscan.width, r.look.overscan.height);
+            return std::make_unique<SolvedFigure>(figure::FigurePicture(std::move(scene), view, all, r.look),
                                                   r.look.style);
         };
         return picture;
@@ -489,6 +495,9 @@ class Figures final : public Pictures {
 std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Film& film,
                                           const std::string& missing) {
     if (film.images().empty()) throw Error("output", "mips", "must be picture, as the script has no texture");
+    if (input.values.given("overscan"))
+        throw Error("overscan", printable(input.values.text("overscan")),
+                    "must not be given with output=mips");
     std::vector<MipTexture> textures;
     for (const std::string& name : film.images()) {
         const std::string key = kTextureKey + name;

@@ -11,6 +11,8 @@ Picture flat_picture(const FlatRequest& request, FlatMap map) {
     Picture picture = picture_through(std::move(map.blocks), Border(request.source, request.wrap),
                                       request.filter, request.output);
     picture.says = std::move(map.says);
+    picture.overscan = request.plan.overscan;
+    picture.adds_alpha = request.adds_alpha;
     return picture;
 }
 
@@ -29,14 +31,17 @@ class FlatPictures final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         const std::optional<Size> size = level_size(m_request.target, level);
-        if (!size || (level > 0 && m_request.display)) return {};
+        const Size& overscan = m_request.plan.overscan;
+        if (!size || (level > 0 && (m_request.display || !(overscan == Size{})))) return {};
         PictureRequest picture;
         picture.size = *size;
         picture.display = m_request.display;
+        picture.add_overscan(overscan);
         picture.pixels = pixels_of(m_request.output);
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
         if (m_request.says)
             for (const Attribute& attribute : *m_request.says) picture.says.push_back(copy_of(attribute));
+        picture.adds_alpha = m_request.adds_alpha;
         if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
         picture.solve = [request = m_request, make_map = m_make_map, size = *size] {
             return solved(flat_picture(request, make_map(size)));
@@ -68,6 +73,10 @@ FlatRequest flat_request(const ParameterValues& values, const SourceFacts& sourc
     r.plan.scheme = rows::chosen<Scheme>(values, "scheme");
     r.plan.tol = values.number("tol");
     r.plan.cull = ends_at_edges(r.wrap, r.output) && !source.overscan;
+    r.adds_alpha =
+        rows::adds_alpha(values, source.has_alpha, r.wrap == Wrap::automatic || r.wrap == Wrap::black);
+    rows::check_overscan(values);
+    r.plan.overscan = rows::overscan_of(values, target);
     return r;
 }
 

@@ -28,14 +28,16 @@ ParameterTable make_lens_table() {
             "undistort: the source was taken through the lens, and the picture is free of it; distort: "
             "the other way round, with the picture of the size that the lens is of"),
         text("lens",
-             "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2) or "
-             "kb4 (k1 to k4), and d, e, the shift of its centre in pixels, which stays where it is; by "
+             "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2), "
+             "kb4 (k1 to k4) or division (k1, k2), and d, e, the shift of its centre in pixels, which stays "
+             "where it is; by "
              "default what the image says of itself"),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture that was taken through the lens, without the "
                      "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
                      "what the image says of itself, for brown also by Exif's focal length")),
         extent,
+        overscan(),
         subimage(),
         concatenate(),
         tile(),
@@ -49,6 +51,7 @@ ParameterTable make_lens_table() {
                 {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
+        alpha(),
         flip_v(),
     };
 }
@@ -115,6 +118,9 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
         throw Error("size", kAll,
                     "makes " + std::to_string(target.width) + "x" + std::to_string(target.height) +
                         " pixels: must be at most " + std::to_string(kMaxSide) + " either way");
+    if (all && values.given("overscan"))
+        throw Error("overscan", printable(values.text("overscan")),
+                    "must not be given together with size=all, which is as much as there is");
     FlatRequest request = flat_request(values, facts, target);
     request.says = observed.says;
     if (!(target == asked)) request.display = in_middle_of(target, asked);

@@ -29,6 +29,7 @@ ParameterTable make_map_table() {
         number("frame", "", "0", -1e9, 1e9, "the number that frame is in the formulas"),
         size("width and height of the picture, or its width alone, in the source's shape; by default the "
              "source's"),
+        overscan(),
         subimage(),
         concatenate(),
         tile(),
@@ -43,6 +44,7 @@ ParameterTable make_map_table() {
                 {"direct", Scheme::direct}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
+        alpha(),
         flip_v(),
     };
 }
@@ -71,7 +73,8 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     if (pushes)
         return pictures_of<PushedPlan>(request, [request, formula](const Size& pixels) {
             try {
-                return PushedMap(formula, request.target, pixels, request.source_size());
+                return PushedMap(formula, request.target, pixels, request.source_size(),
+                                 PushedMap::kMostParts, PushedSheets::pixel_name, request.plan.overscan);
             } catch (const Error& error) {
                 throw Error("direction", "push", error.what());
             }

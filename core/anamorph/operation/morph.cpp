@@ -49,6 +49,7 @@ ParameterTable make_morph_table() {
             "pin_border", "", "", 0, kInfinity,
             "holds the picture's border with lines of this weight; 0: not; by default as the features say"),
         size("width and height of the picture, or its width alone; by default those of a"),
+        overscan(),
         subimage(),
         tile(),
         mip(),
@@ -58,6 +59,7 @@ ParameterTable make_morph_table() {
         scheme({{"auto", MorphScheme::automatic}, {"exact", MorphScheme::exact}}),
         colorspace("color space to filter and blend in; by default that of the pictures"),
         output({{"lines", Word::kNone, "color with the features of all pictures drawn over it"}}),
+        alpha("with wrap=black"),
         flip_v(),
         choice("picture", "", morph_pictures(),
                "one picture alone, warped, in place of the blend: its color, stmap, error, bound; by default "
@@ -101,6 +103,7 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
     request.height = size.height;
 
     MorphOptions& options = request.options;
+    options.overscan = rows::overscan_of(values, size);
     options.scheme = chosen<MorphScheme>(values, "scheme");
     options.tol = values.number("tol");
     options.filter = chosen<Filter>(values, "filter");
@@ -180,14 +183,17 @@ class Morphs final : public Pictures {
 
     std::optional<PictureRequest> picture(int frame, int level) const override {
         const std::optional<Size> size = level_size({m_request.width, m_request.height}, level);
-        if (!size) return {};
+        const Size& overscan = m_request.options.overscan;
+        if (!size || (level > 0 && !(overscan == Size{}))) return {};
         MorphRequest request = m_request;
         request.width = size->width;
         request.height = size->height;
         const MorphOptions options = request.frame_options(frame);
         PictureRequest picture;
         picture.size = *size;
+        picture.add_overscan(overscan);
         picture.pixels = pixels_of(options.output);
+        picture.adds_alpha = options.adds_alpha;
         picture.says = {{"anamorph:tol", options.tol}};
         // A film's frames are blends but for a few.
         if (picture.pixels == PixelKind::color && m_request.frames == 1)
@@ -213,7 +219,9 @@ std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
     std::vector<Size> sizes;
     for (const SourceImage& image : input.sources) sizes.push_back(image.size());
     check_alike(input.sources, input.values);
-    const MorphRequest request = read_morph_request(input.values, sizes);
+    MorphRequest request = read_morph_request(input.values, sizes);
+    request.options.adds_alpha =
+        rows::adds_alpha(input.values, input.sources[0].alpha >= 0, request.options.wrap == Wrap::black);
     return std::make_unique<Morphs>(request, read_features(request, input));
 }
 

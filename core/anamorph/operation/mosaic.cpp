@@ -4,7 +4,7 @@
 #include <cmath>
 #include <deque>
 
-#include "anamorph/image/strip_source.h"
+#include "anamorph/image/part_source.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/panorama_attributes.h"
@@ -64,6 +64,7 @@ ParameterTable make_mosaic_table() {
         as_pano("roll"),
         as_pano("lens"),
         as_pano("size"),
+        overscan(),
         subimage(),
         tile(),
         mip(),
@@ -76,6 +77,7 @@ ParameterTable make_mosaic_table() {
                 {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
         output({{kDistortion, Word::kNone, "how far heights may be from 1 times the true ones"}}),
+        alpha(),
         flip_v(),
     };
 }
@@ -118,6 +120,7 @@ MosaicRequest read_request(const ParameterValues& values, const SourceFacts& fac
                           {},
                           {}};
     request.options.scheme = chosen<Scheme>(values, "scheme");
+    request.options.overscan = read_overscan(values, request.target);
     request.distortion = values.text("output") == kDistortion;
     if (values.given("circle")) request.circle = values.whole("circle") - 1;
     if (request.circle && *request.circle >= stack.circles)
@@ -152,11 +155,12 @@ class SolvedMosaic final : public SolvedPicture {
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
-        std::deque<StripSource> strips;
+        std::deque<PartSource> strips;
         std::vector<const Source*> panoramas;
         const Source* stack = sources.empty() ? nullptr : sources[0];
         for (int i = 0; stack && i < m_circles; ++i)
-            panoramas.push_back(&strips.emplace_back(*stack, i * m_height, m_height));
+            panoramas.push_back(
+                &strips.emplace_back(*stack, Box{0, i * m_height, stack->size(0).width, (i + 1) * m_height}));
         return m_picture->draw(panoramas, box, view, parallel_for);
     }
 
@@ -171,6 +175,8 @@ class Mosaics final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         MosaicRequest request = m_request;
+        const Size& overscan = request.options.overscan;
+        if (level > 0 && !(overscan == Size{})) return {};
         for (; level > 0; --level) {
             const std::optional<Chart> half = half_size(request.target);
             if (!half) return {};
@@ -178,8 +184,10 @@ class Mosaics final : public Pictures {
         }
         PictureRequest picture;
         picture.size = {request.target.width(), request.target.height()};
+        picture.add_overscan(overscan);
         picture.pixels = request.distortion ? PixelKind::value : pixels_of(request.options.output);
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        picture.adds_alpha = request.options.adds_alpha;
         const bool single = request.circle || request.stack.circles == 1;
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest && single)
             picture.moves = 0;

@@ -80,6 +80,14 @@ void check_color_space(const SourceImage& image, const std::string& name, const 
                     printable(wanted) + "\": must be the same, or colorspace be given");
 }
 
+void PictureRequest::add_overscan(const Size& overscan) {
+    if (overscan == Size{}) return;
+    const Box all = widened({0, 0, size.width, size.height}, overscan);
+    display =
+        Box{overscan.width, overscan.height, overscan.width + size.width, overscan.height + size.height};
+    size = {all.width(), all.height()};
+}
+
 std::optional<Size> level_size(const Size& size, int level) {
     if (level > 0 && std::max(size.width, size.height) >> level < 1) return {};
     return Size{std::max(1, size.width >> level), std::max(1, size.height >> level)};

@@ -53,6 +53,8 @@ struct SourceFacts {
     std::string focal_length_said_by = {};
     /// The rectangle around all of its pixels, where some lie beyond the edges of its picture (Source::extent).
     std::optional<Box> overscan = {};
+    /// Has it a channel of alpha?
+    bool has_alpha = false;
 };
 
 /// A source as its host has opened it.
@@ -98,10 +100,14 @@ struct PictureRequest {
     /// The source whose pixels the picture shows as they are, moved and never computed with: a host may have it move what
     /// the core has no numbers for.
     std::optional<std::size_t> moves = {};
+    /// Has colour one channel more than the first source, the last, of alpha?
+    bool adds_alpha = false;
     std::function<std::unique_ptr<const SolvedPicture>()> solve;
 
     /// The display window, whether it is another or not.
     Box shown() const { return display.value_or(Box{0, 0, size.width, size.height}); }
+    /// Adds so many pixels beyond the edges of a picture of `size`, across and down, on either side.
+    void add_overscan(const Size& overscan);
 };
 
 /// How a source is divided into faces.

@@ -9,11 +9,13 @@
 #include <map>
 
 #include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/film.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/pano_formula.h"
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/operation/stereo.h"
 
 namespace anamorph {
 namespace {
@@ -48,6 +50,38 @@ std::string limited_fovs() {
                 std::to_string(std::lround(fov.most)) + " for " + std::string(name_of(p));
     }
     return text;
+}
+
+/// The words of face=: those of OpenEXR, in the order of the projection cubemap, and directions.
+struct FaceWord {
+    const char* name;
+    glm::dvec3 toward;
+};
+constexpr std::array<const char*, 6> kExrFaces = {"+x", "-x", "+y", "-y", "+z", "-z"};
+const std::array<FaceWord, 6> kFaceWords = {{{"right", {1, 0, 0}},
+                                             {"left", {-1, 0, 0}},
+                                             {"up", {0, -1, 0}},
+                                             {"down", {0, 1, 0}},
+                                             {"front", {0, 0, 1}},
+                                             {"back", {0, 0, -1}}}};
+std::vector<std::string> face_names() {
+    std::vector<std::string> names(kExrFaces.begin(), kExrFaces.end());
+    for (const FaceWord& word : kFaceWords) names.emplace_back(word.name);
+    return names;
+}
+
+/// Frames over time.
+ParameterTable film_rows() {
+    using namespace rows;
+    ParameterTable table =
+        sequence(" (of the cameras: yaw, fov, srcpitch), and of keys that define names of formulas");
+    table.insert(table.begin() + 1,
+                 number("frame", "", "0", -1e9, 1e9,
+                        "one frame alone, which may lie between others; the number that frame is in "
+                        "formulas"));
+    const ParameterTable open = shutter();
+    table.insert(table.end(), open.begin(), open.end());
+    return table;
 }
 
 ParameterTable make_pano_table() {
@@ -92,10 +126,12 @@ ParameterTable make_pano_table() {
             "whole's; by default as the image says (GPano:CroppedArea...), also of one that was resized; "
             "none: it is whole"),
         number("srcd", "", "1", 0, Chart::kMostDistance,
-               "Pannini's distance d of the source, for from=pannini"),
-        number("d", "", "1", 0, Chart::kMostDistance,
-               "Pannini's distance d of the picture, for to=pannini: 0 is rectilinear, 1 the usual one; fov "
-               "stays below the angle at which d + cos or 1 + d cos of its half is 0"),
+               "distance d of the source, for from=pannini, and xi for from=unified"),
+        number(
+            "d", "", "1", 0, Chart::kMostDistance,
+            "Pannini's distance d of the picture, for to=pannini: 0 is rectilinear, 1 the usual one; of "
+            "to=unified, xi: 0 is rectilinear, 1 stereographic; fov stays below the angle at which d + cos "
+            "or 1 + d cos of its half is 0"),
         number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
@@ -109,14 +145,21 @@ ParameterTable make_pano_table() {
         number("srcroll", "degrees", "", -kInfinity, kInfinity,
                "how the source's camera was held: turned about its axis, clockwise; in the same order; by "
                "default as the image says (GPano:PoseRollDegrees), else 0"),
+        choice(
+            "face", "", face_names(),
+            "of to=cubemap, cubemap3x2 and cubecross: one face alone, as it stands there; size is then its "
+            "own. +x to -z are the faces of cubemap from above, as OpenEXR has them; the others say where "
+            "a face lies"),
         text("srclens",
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
              "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
-             "(k1 to k6, p1, p2), 3de4 (k1, k2) or kb4 (k1 to k4), and d, e, the shift of its centre in "
+             "(k1 to k6, p1, p2), 3de4 (k1, k2), kb4 (k1 to k4) or division (k1, k2), and d, e, the shift of "
+             "its centre in "
              "pixels; by default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
+        overscan(),
         subimage(),
         concatenate(),
         tile(),
@@ -138,10 +181,11 @@ ParameterTable make_pano_table() {
              "embm-2003:size=64,texel=V8U8 or {\"size\": 64, \"texel\": \"V8U8\"}; by default embm-2003"),
         colorspace("color space to filter in; by default the source's own"),
         output(),
+        alpha(),
         flip_v(),
     };
-    const ParameterTable of_formula = ray_rows();
-    table.insert(table.end(), of_formula.begin(), of_formula.end());
+    for (const ParameterTable& part : {stereo(), film_rows(), ray_rows()})
+        table.insert(table.end(), part.begin(), part.end());
     return table;
 }
 
@@ -391,6 +435,58 @@ Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     return chart(size.width, size.height, lens);
 }
 
+namespace {
+
+/// Where a face of that name looks. Throws Error where the projection's faces have no such names.
+glm::dvec3 direction_of_face(const ParameterValues& values, Projection to) {
+    const std::string& face = values.text("face");
+    const auto exr = std::find(kExrFaces.begin(), kExrFaces.end(), face);
+    const bool has_names =
+        to == Projection::cubemap || to == Projection::cubemap3x2 || to == Projection::cubecross;
+    if (!has_names)
+        throw Error("face", face,
+                    "must be of to=cubemap, cubemap3x2 or cubecross, not " + std::string(name_of(to)));
+    if (exr == kExrFaces.end())
+        return std::find_if(kFaceWords.begin(), kFaceWords.end(),
+                            [&](const FaceWord& word) { return word.name == face; })
+            ->toward;
+    if (to != Projection::cubemap)
+        throw Error("face", face, "must be right, left, up, down, front or back, or of to=cubemap");
+    const Chart cube(Projection::cubemap, 1, 6);
+    return cube.pieces()[static_cast<std::size_t>(exr - kExrFaces.begin())].toward;
+}
+
+/// One face of a layout as a picture of its own, and how it is turned.
+struct FaceAlone {
+    Chart chart;
+    glm::dmat3 axes;
+};
+FaceAlone read_face(const ParameterValues& values, const Chart& source) {
+    const Projection to = projection_from_name(values.text("to"), "to");
+    const glm::dvec3 toward = direction_of_face(values, to);
+    const FaceGrid grid = faces_of(to);
+    int side = 0;
+    if (values.given("size")) {
+        const Size size = values.extent("size");
+        if (size.height >= 0 && size.height != size.width)
+            throw Error("size", values.text("size"), "must be square with face=" + values.text("face"));
+        side = size.width;
+    } else {
+        side = read_target_chart(values, source).width() / grid.columns;
+    }
+    const Chart layout(to, grid.columns, grid.rows);
+    const auto piece = std::find_if(layout.pieces().begin(), layout.pieces().end(),
+                                    [&](const Piece& p) { return p.toward == toward; });
+    return {Chart(Projection::rectilinear, side, side, 90), piece->axes};
+}
+
+}  // namespace
+
+Size read_overscan(const ParameterValues& values, const Chart& target) {
+    rows::check_overscan(values, static_cast<int>(target.pieces().size()));
+    return rows::overscan_of(values, {target.width(), target.height()});
+}
+
 Orientation read_orientation(const ParameterValues& values) {
     return {values.number("yaw"), values.number("pitch"), values.number("roll")};
 }
@@ -401,7 +497,9 @@ ReprojectOptions read_reproject_options(const ParameterValues& values, const Sou
     options.filter = chosen<Filter>(values, "filter");
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
-    options.overscan = source.overscan.has_value();
+    options.source_overscan = source.overscan.has_value();
+    options.adds_alpha = rows::adds_alpha(values, source.has_alpha,
+                                          options.wrap == Wrap::automatic || options.wrap == Wrap::black);
     return options;
 }
 
@@ -457,12 +555,15 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     ReprojectOptions options = read_reproject_options(values, facts);
     const std::optional<machine::BumpUnit> machine = machine_of(values);
     if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
-    return {source,
-            read_target_chart(values, source.chart),
-            read_orientation(values),
-            read_held(values, facts, source),
-            options,
-            machine};
+    Orientation look = read_orientation(values);
+    std::optional<FaceAlone> face;
+    if (values.given("face")) {
+        face = read_face(values, source.chart);
+        look.face = face->axes;
+    }
+    const Chart target = face ? face->chart : read_target_chart(values, source.chart);
+    options.overscan = read_overscan(values, target);
+    return {source, target, look, read_held(values, facts, source), options, machine};
 }
 
 std::optional<Chart> half_size(const Chart& chart) {
@@ -494,6 +595,8 @@ class Panos final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         ReprojectRequest request = m_request;
+        const Size& overscan = request.options.overscan;
+        if (level > 0 && !(overscan == Size{})) return {};
         for (; level > 0; --level) {
             const std::optional<Chart> half = half_size(request.target);
             if (!half) return {};
@@ -501,7 +604,9 @@ class Panos final : public Pictures {
         }
         PictureRequest picture;
         picture.size = {request.target.width(), request.target.height()};
+        picture.add_overscan(overscan);
         picture.pixels = pixels_of(request.options.output);
+        picture.adds_alpha = request.options.adds_alpha;
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest)
             picture.moves = 0;
@@ -532,9 +637,15 @@ const Operation& pano_operation() {
         1,
         {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
         [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
-            const SourceFacts& facts = input.sources[0].facts;
-            if (has_formula(input.values)) return pictures_of_formula(input.values, facts);
-            return std::make_unique<Panos>(read_reproject_request(input.values, facts));
+            const Eyes eyes(input.values, input.sources[0].facts);
+            const bool is_formula = has_formula(input.values);
+            return eyes.pictures(
+                film_pictures(input,
+                              [is_formula, facts = eyes.facts_of_one()](
+                                  const ParameterValues& values) -> std::unique_ptr<const Pictures> {
+                                  if (is_formula) return pictures_of_formula(values, facts);
+                                  return std::make_unique<Panos>(read_reproject_request(values, facts));
+                              }));
         }};
     return operation;
 }

@@ -51,11 +51,12 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
 inline constexpr int kMaxDefaultSize = 16384;
 
 /// Read parts of a request, for tables with some of its rows: the source, how it was held, the picture (to,
-/// fov, d, lens, size), where its camera looks (yaw, pitch, roll), and all options (tol, filter, wrap,
+/// fov, d, lens, size), its overscan, where its camera looks (yaw, pitch, roll), and all options (tol, filter, wrap,
 /// output) but the scheme. Throw Error.
 TakenSource read_source(const ParameterValues& values, const SourceFacts& source);
 Orientation read_held(const ParameterValues& values, const SourceFacts& facts, const TakenSource& source);
 Chart read_target_chart(const ParameterValues& values, const Chart& source);
+Size read_overscan(const ParameterValues& values, const Chart& target);
 Orientation read_orientation(const ParameterValues& values);
 ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source);
 

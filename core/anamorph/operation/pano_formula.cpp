@@ -70,7 +70,7 @@ struct DirectionFormula {
                  const Orientation& held, const PlanOptions& options) const {
         try {
             return with_undefined_fraction(std::make_shared<const InverseViewPlan>(
-                InverseView(source, points, picture, pixels, look, held), options));
+                InverseView(source, points, picture, pixels, look, held, options.overscan), options));
         } catch (const Error& error) {
             throw Error("point_x and point_y: " + std::string(error.what()));
         }
@@ -116,8 +116,11 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
     setting.picture = size;
     ReprojectOptions options = read_reproject_options(values, facts);
     options.scheme = rows::chosen<Scheme>(values, "scheme");
-    const FlatRequest request{source.chart, size,           plan_options(options), options.filter,
-                              options.wrap, options.output, saying(source.says())};
+    rows::check_overscan(values);
+    options.overscan = rows::overscan_of(values, size);
+    FlatRequest request{source.chart, size,           plan_options(options), options.filter,
+                        options.wrap, options.output, saying(source.says())};
+    request.adds_alpha = options.adds_alpha;
     const Orientation look = read_orientation(values), held = read_held(values, facts, source);
     return flat_pictures(
         request, [formula = formula_of(text, setting), request, look, held](const Size& pixels) {
@@ -126,7 +129,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
 }
 
 void refuse_what_formulas_have_not(const ParameterValues& values) {
-    for (const char* name : {"fov", "vfov", "focal", "sensor", "d", "lens"})
+    for (const char* name : {"fov", "vfov", "focal", "sensor", "d", "lens", "face"})
         if (values.given(name))
             throw Error(name, printable(values.text(name)),
                         "is of other projections than to=formula: must not be given");
@@ -163,7 +166,6 @@ ParameterTable ray_rows() {
         definitions("let",
                     "definitions before these, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and "
                     "stands before these"),
-        number("frame", "", "0", -1e9, 1e9, "the number that frame is in these formulas"),
     };
 }
 

@@ -9,7 +9,7 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     Attributes says;
     std::string projection = std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov());
     if (picture.vertical().fov != 0) projection += " vfov=" + shortest(picture.vertical().fov);
-    if (picture.projection() == Projection::pannini) projection += " d=" + shortest(picture.distance());
+    if (has_distance(picture.projection())) projection += " d=" + shortest(picture.distance());
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;

@@ -2,9 +2,13 @@
 #include "anamorph/operation/rows.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <string_view>
 
 #include "anamorph/image/source.h"
 #include "anamorph/plan/scheme.h"
@@ -51,7 +55,8 @@ const std::vector<Word>& shared_outputs() {
          "the source point (u, v) with v down, in 0 to 1 on the source, "
          "beyond that beyond its edges, (-1, -1) where there is none or the source is far"},
         {"error", Output::error, "its distance from the exact one in source pixels"},
-        {"bound", Output::bound, "the proven bound of that"}};
+        {"bound", Output::bound, "the proven bound of that"},
+        {"coverage", Output::coverage, "how much of the pixel the source covers, 0 to 1, as filter has it"}};
     return words;
 }
 
@@ -142,11 +147,63 @@ Parameter size(const std::string& doc) {
     return extent("size", "", 1, kMaxSide, doc);
 }
 
+Parameter overscan() {
+    return text("overscan",
+                "pixels that the picture has beyond each of its edges, or per cent of its width and height, "
+                "across and down if they differ: 32, 5%, 64x16; they belong to the data window, and size, "
+                "fields of view and formulas are of the display window");
+}
+
 Parameter subimage() {
     return text(
         "subimage",
         "of a source of several parts, pages or frames, the one that is drawn: its number, from 0, or its "
         "name; by default all of them, one after the other, and of a film the first");
+}
+
+namespace {
+
+/// "32" or "5%" of `side`, in whole pixels; none where the text is neither.
+std::optional<int> overscan_along(std::string_view text, int side) {
+    const bool is_share = text.ends_with('%');
+    if (is_share) text.remove_suffix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || !(number >= 0)) return {};
+    const double pixels = is_share ? std::round(number / 100 * side) : number;
+    if (pixels > kMaxSide || pixels != std::floor(pixels)) return {};
+    return static_cast<int>(pixels);
+}
+
+}  // namespace
+
+Size overscan_of(const ParameterValues& values, const Size& shown) {
+    if (!values.knows("overscan") || !values.given("overscan")) return {};
+    const std::string& text = values.text("overscan");
+    const std::size_t cross = text.find('x');
+    const std::string_view across = std::string_view(text).substr(0, cross);
+    const std::string_view down =
+        cross == std::string::npos ? across : std::string_view(text).substr(cross + 1);
+    const std::optional<int> x = overscan_along(across, shown.width), y = overscan_along(down, shown.height);
+    if (!x || !y)
+        throw Error("overscan", printable(text),
+                    "must be whole pixels or per cent, N, P%, NxN or P%xP%, from 0 to " +
+                        std::to_string(kMaxSide) + " pixels");
+    const std::int64_t width = shown.width + std::int64_t{2} * *x,
+                       height = shown.height + std::int64_t{2} * *y;
+    if (width > kMaxSide || height > kMaxSide)
+        throw Error("overscan", printable(text),
+                    "makes " + std::to_string(width) + "x" + std::to_string(height) +
+                        " pixels: must be at most " + std::to_string(kMaxSide) + " either way");
+    return {*x, *y};
+}
+
+void check_overscan(const ParameterValues& values, int pieces) {
+    if (!values.given("overscan")) return;
+    const std::string text = printable(values.text("overscan"));
+    if (pieces > 1) throw Error("overscan", text, "must be of a picture in one piece, without faces");
+    if (values.text("scheme") == "hardware")
+        throw Error("overscan", text, "must not be given with scheme=hardware");
 }
 
 Parameter concatenate() {
@@ -204,8 +261,32 @@ Parameter scheme(const std::vector<Word>& words) {
 
 Parameter output(const std::vector<Word>& own) {
     std::vector<Word> words = shared_outputs();
-    words.insert(words.end(), own.begin(), own.end());
+    // A word that means something else here keeps its place.
+    for (const Word& word : own) {
+        const auto same = std::find_if(words.begin(), words.end(),
+                                       [&](const Word& other) { return other.name == word.name; });
+        if (same != words.end())
+            same->meaning = word.meaning;
+        else
+            words.push_back(word);
+    }
     return enumeration("output", "color", words, "color, or per pixel: " + meanings_of(words));
+}
+
+Parameter alpha(const std::string& wraps) {
+    return toggle("alpha", "0",
+                  "1: where the source has no alpha, the picture has one, how much of each pixel the source "
+                  "covers, by which colors are faded " +
+                      wraps);
+}
+
+bool adds_alpha(const ParameterValues& values, bool source_has_alpha, bool is_faded) {
+    if (!values.toggle("alpha") || source_has_alpha) return false;
+    if (values.knows("scheme") && values.text("scheme") == "hardware")
+        throw Error("alpha", "1", "must not be given with scheme=hardware");
+    if (!is_faded)
+        throw Error("alpha", "1", "must be given with wrap=black, which fades colors at the source's edges");
+    return true;
 }
 
 Parameter flip_v(const std::string& more) {

@@ -52,6 +52,7 @@ Parameter image(const char* name, const std::string& doc);
 Parameter file(const char* name, const std::string& doc);
 
 Parameter size(const std::string& doc);
+Parameter overscan();
 Parameter subimage();
 Parameter concatenate();
 Parameter tile();
@@ -66,14 +67,25 @@ Parameter wrap(const std::string& automatic);
 /// The row of schemes. The words auto, exact, blocks, residual, direct and hardware mean the same everywhere
 /// and need no meaning here.
 Parameter scheme(const std::vector<Word>& words);
-/// The row of outputs: the words that all operations share, then the operation's own.
+/// The row of outputs: the words that all operations share, then the operation's own; one that is among the former means what the
+/// operation says.
 Parameter output(const std::vector<Word>& own = {});
+/// `wraps`: with which values of wrap.
+Parameter alpha(const std::string& wraps = "with wrap=automatic or black");
+/// Is the coverage of the source to be added as alpha? `is_faded`: do colours end at the source's edges? Throws Error.
+bool adds_alpha(const ParameterValues& values, bool source_has_alpha, bool is_faded);
 /// `more`: what else than the output it is of.
 Parameter flip_v(const std::string& more = "");
 
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
 /// given.
 Size size_of(const ParameterValues& values, const Size& natural);
+
+/// The pixels that a picture of size `shown` is to have beyond its edges, across and down, on either side: as the row
+/// `overscan` says. Throws Error.
+Size overscan_of(const ParameterValues& values, const Size& shown);
+/// Throws Error where the row is given in a picture of several faces, or with scheme=hardware.
+void check_overscan(const ParameterValues& values, int pieces = 1);
 
 /// The three numbers of a row, each from `least` to `most`. Throws Error where there are not three such.
 glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, double least, double most);

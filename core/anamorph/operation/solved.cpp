@@ -38,6 +38,7 @@ PixelKind pixels_of(Output output) {
             return PixelKind::point;
         case Output::error:
         case Output::bound:
+        case Output::coverage:
             return PixelKind::value;
         default:
             return PixelKind::color;

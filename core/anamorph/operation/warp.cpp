@@ -35,6 +35,7 @@ ParameterTable make_warp_table() {
                "how far every vertex is moved: 0 not at all, 1 as given, any other as far in proportion"),
         size("width and height of the picture, or its width alone; by default the source's, of an ST-map "
              "that pulls its own"),
+        overscan(),
         subimage(),
         concatenate(),
         tile(),
@@ -56,6 +57,7 @@ ParameterTable make_warp_table() {
              "it needs no mesh"),
         colorspace("color space to filter in; by default the source's own"),
         output({{"folds", Word::kNone, "not 0 where the warp folds"}}),
+        alpha(),
         flip_v(", and of the one that mesh names,"),
     };
 }
@@ -233,6 +235,7 @@ class Warps final : public Pictures {
         picture.size = *size;
         picture.display = m_request.display;
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
+        picture.adds_alpha = request.options.adds_alpha;
         if (!request.machine) picture.says = {{"anamorph:tol", request.options.tol}};
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
             !request.program)
@@ -264,6 +267,44 @@ class Warps final : public Pictures {
     std::shared_ptr<const WarpMap> m_map;
 };
 
+/// Moves positions in the picture by its overscan, in whose pixels they are then; positions in the source do not move.
+WarpMap with_overscan(const WarpMap& map, const Size& source, const Size& shown, const Size& overscan) {
+    WarpMap out = map;
+    // From parts of a size, if need be, to pixels of it, and those beyond its edge.
+    const auto place = [](Point<double>& p, Units units, const Size& size, const Size& more) {
+        const bool parts = units == Units::fractions;
+        p = {p.x * (parts ? size.width : 1) + more.width, p.y * (parts ? size.height : 1) + more.height};
+    };
+    if (auto* points = std::get_if<ControlPoints>(&out.shape)) {
+        for (ControlPoints::Pair& pair : points->pairs) {
+            Point<double> at{pair.x, pair.y}, to{pair.u, pair.v};
+            place(at, points->units, shown, overscan);
+            place(to, points->units, source, {});
+            pair.x = at.x, pair.y = at.y, pair.u = to.x, pair.v = to.y;
+        }
+        points->units = Units::pixels;
+        points->overscan = overscan;
+        return out;
+    }
+    auto& mesh = std::get<ControlMesh>(out.shape);
+    const bool pull = mesh.direction == Direction::pull;
+    const Size &from = pull ? shown : source, &to = pull ? source : shown;
+    const Size before = pull ? overscan : Size{}, beyond = pull ? Size{} : overscan;
+    const auto place_lines = [&](std::vector<double>& lines, int cells, int side, int more) {
+        const bool even = lines.empty();
+        for (int i = 0; even && i <= cells; ++i) lines.push_back(double(i) * side / cells);
+        const double unit = !even && mesh.units == Units::fractions ? side : 1;
+        for (double& line : lines) line = line * unit + more;
+    };
+    place_lines(mesh.x_lines, mesh.columns, from.width, before.width);
+    place_lines(mesh.y_lines, mesh.rows, from.height, before.height);
+    for (Point<double>& vertex : mesh.vertices) place(vertex, mesh.units, to, beyond);
+    for (ControlMesh::Level& level : mesh.levels)
+        for (ControlMesh::Vertex& vertex : level.vertices) place(vertex.at, mesh.units, to, beyond);
+    mesh.units = Units::pixels;
+    return out;
+}
+
 std::string text_of(const Size& size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
@@ -287,16 +328,42 @@ void take_windows(const ControlMesh& mesh, const ParameterValues& values, WarpRe
     request.display = mesh.display;
 }
 
+/// The picture with its overscan, and the map in its pixels.
+std::shared_ptr<const WarpMap> take_overscan(const std::shared_ptr<const WarpMap>& map,
+                                             const ParameterValues& values, WarpRequest& request) {
+    rows::check_overscan(values);
+    const Size overscan = rows::overscan_of(values, request.target);
+    if (overscan == Size{}) return map;
+    const auto refuse = [&](const char* why) {
+        throw Error("overscan", printable(values.text("overscan")), std::string("must not be given ") + why);
+    };
+    const auto* mesh = std::get_if<ControlMesh>(&map->shape);
+    if (mesh && mesh->width > 0) refuse("of an ST-map, whose windows are its picture's");
+    // Its least is the identity, which is one of pictures without overscan.
+    if (request.options.amount != 1) refuse("together with amount");
+    PictureRequest all;
+    all.size = request.target;
+    all.add_overscan(overscan);
+    const auto moved =
+        std::make_shared<const WarpMap>(with_overscan(*map, request.source, request.target, overscan));
+    request.target = all.size;
+    request.display = all.display;
+    return moved;
+}
+
 const char* const kExampleMesh = R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [
     [0, 0], [0.5, 0], [1, 0],  [0, 0.5], [0.61, 0.42], [1, 0.5],  [0, 1], [0.5, 1], [1, 1]]})";
 
 std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
     WarpRequest request = read_warp_request(input.values, input.sources[0].size());
     request.program = read_shader(input);
+    MeshWarpOptions& options = request.options;
+    options.adds_alpha = rows::adds_alpha(input.values, input.sources[0].alpha >= 0,
+                                          options.wrap == Wrap::automatic || options.wrap == Wrap::black);
     const std::shared_ptr<const WarpMap> map = read_map(request, input);
     const auto* mesh = std::get_if<ControlMesh>(&map->shape);
     if (mesh && mesh->width > 0) take_windows(*mesh, input.values, request);
-    return std::make_unique<Warps>(request, map);
+    return std::make_unique<Warps>(request, take_overscan(map, input.values, request));
 }
 
 }  // namespace

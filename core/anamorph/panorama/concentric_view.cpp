@@ -17,7 +17,8 @@ class Sights {
         for (std::size_t i = 0; i < m_pieces.size(); ++i) {
             const Box& box = m_pieces[i];
             const int piece = static_cast<int>(i);
-            if (x > box.x0 && x < box.x1 && y > box.y0 && y < box.y1)
+            const bool is_in = x > box.x0 && x < box.x1 && y > box.y0 && y < box.y1;
+            if (is_in || m_pieces.size() == 1)
                 return m_view.target().inside(x, y, piece) >= 0 ? m_view.source_ray(x, y, piece)
                                                                 : Ray<double>{};
         }
@@ -60,6 +61,8 @@ Picture mosaic_picture(const Panorama& view, const ConcentricStack& stack, const
     Picture picture;
     picture.filter = options.filter;
     picture.output = options.output;
+    picture.overscan = options.overscan;
+    picture.adds_alpha = options.adds_alpha;
     if (circle || stack.circles == 1)
         picture.maps = {panorama_of(view, stack, circle.value_or(0), false, options)};
     else

@@ -20,8 +20,8 @@ std::string direction_name(const Point<double>& globe) {
 }  // namespace
 
 InverseView::InverseView(const Chart& source, PlaneFormula points, const Size& picture, const Size& target,
-                         const Orientation& orientation, const Orientation& held)
-    : m_globe(std::move(points), picture, target, kGlobe, PushedMap::kMostParts, direction_name),
+                         const Orientation& orientation, const Orientation& held, const Size& overscan)
+    : m_globe(std::move(points), picture, target, kGlobe, PushedMap::kMostParts, direction_name, overscan),
       m_view(source, Chart(Projection::equirectangular, kGlobe.width, kGlobe.height), orientation, held) {}
 
 InverseView::Local InverseView::local_around(double x, double y, int piece) const {

@@ -17,9 +17,9 @@ class InverseView {
     static constexpr Size kGlobe{2048, 1024};
 
     /// `points`: as parse_directions() makes them. `picture`: the size that they speak of. `target`: the
-    /// pixels that the picture has. Throws Error as Panorama and PushedMap do.
+    /// pixels that the picture has, `overscan`: those beyond its edges. Throws Error as Panorama and PushedMap do.
     InverseView(const Chart& source, PlaneFormula points, const Size& picture, const Size& target,
-                const Orientation& orientation = {}, const Orientation& held = {});
+                const Orientation& orientation = {}, const Orientation& held = {}, const Size& overscan = {});
 
     const Chart& source() const { return m_view.source(); }
 

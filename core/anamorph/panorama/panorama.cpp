@@ -76,6 +76,18 @@ Turn relative(const Turn& held, const Turn& look) {
     return turn;
 }
 
+/// A turn after that of a face, whose axes are axes of the cube, one way or the other.
+Turn of_face(const Turn& turn, const glm::dmat3& face) {
+    Turn all;
+    for (std::size_t column = 0; column < 3; ++column)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double along = face[static_cast<int>(column)][static_cast<int>(i)];
+            for (std::size_t row = 0; along != 0 && row < 3; ++row)
+                all[column][row] = Constant(along * turn[i][row].precise(), error_of(turn[i][row]));
+        }
+    return all;
+}
+
 glm::dmat3 matrix_of(const Turn& turn) {
     glm::dmat3 matrix;
     for (int column = 0; column < 3; ++column)
@@ -102,6 +114,7 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "must be a finite angle in degrees");
     m_turn = turn_of(orientation);
+    if (orientation.face != glm::dmat3(1)) m_turn = of_face(m_turn, orientation.face);
     if (held.yaw != 0 || held.pitch != 0 || held.roll != 0) m_turn = relative(turn_of(held), m_turn);
     if (held.ahead != 0) m_turn = relative(turn_of({held.ahead}), m_turn);
     m_rotation = matrix_of(m_turn);

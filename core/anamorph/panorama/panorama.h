@@ -18,6 +18,8 @@ struct Orientation {
     double yaw = 0, pitch = 0, roll = 0;
     /// A turn to the right before all others: where a part of a panorama has its middle in the whole one. Of sources alone.
     double ahead = 0;
+    /// The axes (right, down, forward) of a face of a cube as columns, which is turned so before all others. Of targets alone.
+    glm::dmat3 face{1};
 };
 
 /// The rotation R of an orientation, between frames with x right, y down, z forward.

@@ -18,7 +18,11 @@ struct ReprojectOptions {
     Wrap wrap = Wrap::automatic;
     Output output = Output::color;
     /// Has the source texels beyond the edges of its picture (Source::extent) that are to be drawn?
-    bool overscan = false;
+    bool source_overscan = false;
+    /// Pixels beyond the edges of the picture, across and down, on either side; only of one in one piece.
+    Size overscan = {};
+    /// Has colour a channel more, of how much of a pixel the source covers (Picture::adds_alpha)?
+    bool adds_alpha = false;
 };
 
 /// How the map of a reprojection is approximated.

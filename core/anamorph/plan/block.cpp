@@ -43,9 +43,11 @@ BlockMap::BlockMap(int width, int height, const std::vector<Box>& pieces, const 
       m_cache(std::make_shared<Cache>(layout.kept_regions)) {
     const int side = layout.region_side;
     for (const Box& box : pieces) {
-        const int columns = (box.width() + side - 1) / side, rows = (box.height() + side - 1) / side;
-        m_grids.push_back({box, m_regions, columns});
+        const int x0 = region_corner(box.x0, side), y0 = region_corner(box.y0, side);
+        const int columns = (box.x1 - x0 + side - 1) / side, rows = (box.y1 - y0 + side - 1) / side;
+        m_grids.push_back({box, m_regions, columns, x0, y0});
         m_regions += std::int64_t{columns} * rows;
+        m_pixels += std::int64_t{box.width()} * box.height();
     }
 }
 
@@ -54,8 +56,8 @@ BlockMap::Place BlockMap::place_of(std::int64_t region) const {
     while (m_grids[piece].first > region) --piece;
     const Grid& grid = m_grids[piece];
     const int side = m_layout.region_side;
-    const int x = grid.box.x0 + static_cast<int>((region - grid.first) % grid.columns) * side;
-    const int y = grid.box.y0 + static_cast<int>((region - grid.first) / grid.columns) * side;
+    const int x = grid.x0 + static_cast<int>((region - grid.first) % grid.columns) * side;
+    const int y = grid.y0 + static_cast<int>((region - grid.first) / grid.columns) * side;
     return {intersection({x, y, x + side, y + side}, grid.box), static_cast<int>(piece)};
 }
 
@@ -65,9 +67,8 @@ std::vector<std::int64_t> BlockMap::regions_in(const Box& box) const {
         const Box part = intersection(box, grid.box);
         if (part.empty()) continue;
         const auto number = [&](int at, int from) { return (at - from) / m_layout.region_side; };
-        for (int row = number(part.y0, grid.box.y0); row <= number(part.y1 - 1, grid.box.y0); ++row)
-            for (int column = number(part.x0, grid.box.x0); column <= number(part.x1 - 1, grid.box.x0);
-                 ++column)
+        for (int row = number(part.y0, grid.y0); row <= number(part.y1 - 1, grid.y0); ++row)
+            for (int column = number(part.x0, grid.x0); column <= number(part.x1 - 1, grid.x0); ++column)
                 found.push_back(grid.first + std::int64_t{row} * grid.columns + column);
     }
     return found;
@@ -117,7 +118,7 @@ Reached BlockMap::reached(const ParallelFor& parallel_for) const {
         reached.max_error = std::max(reached.max_error, bound);
         exact += pixels;
     });
-    reached.exact_fraction = static_cast<double>(exact) / (double(m_width) * m_height * layers());
+    reached.exact_fraction = static_cast<double>(exact) / (static_cast<double>(m_pixels) * layers());
     const std::lock_guard lock(m_cache->mutex);
     m_cache->reached = reached;
     return reached;

@@ -118,6 +118,12 @@ struct DoubleRows {
     std::ptrdiff_t stride;  ///< entries from row to row; behind each there is room for 16 more
 };
 
+/// The corner of the region, of that side, in which a piece begins: regions stand on multiples of their side where the piece
+/// begins before its picture does, else at the piece's own corner.
+constexpr int region_corner(int first, int side) {
+    return first < 0 ? -((side - 1 - first) / side) * side : first;
+}
+
 /// The layout of a map, and how much is kept of it.
 struct BlockLayout {
     int layers = 1;
@@ -136,7 +142,8 @@ class BlockMap {
   public:
     static constexpr int kRegion = BlockLayout{}.region_side;
 
-    /// `pieces`: boxes of a target of width x height pixels.
+    /// `pieces`: boxes of a target of width x height pixels. A single one may reach beyond it (overscan): the regions inside are
+    /// then the same.
     BlockMap(int width, int height, const std::vector<Box>& pieces, const BlockLayout& layout = {});
     virtual ~BlockMap() = default;
 
@@ -202,11 +209,12 @@ class BlockMap {
         Box box;
         int piece;
     };
-    /// Regions of one piece, numbered row by row.
+    /// Regions of one piece, numbered row by row, from a corner (region_corner()) on.
     struct Grid {
         Box box;
         std::int64_t first;
         int columns;
+        int x0, y0;
     };
     struct Cache;
 
@@ -215,7 +223,7 @@ class BlockMap {
     int m_width, m_height;
     BlockLayout m_layout;
     std::vector<Grid> m_grids;
-    std::int64_t m_regions = 0;
+    std::int64_t m_regions = 0, m_pixels = 0;
     std::shared_ptr<Cache> m_cache;
 };
 

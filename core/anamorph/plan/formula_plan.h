@@ -26,6 +26,8 @@ struct PlanOptions {
     bool cull = true;
     /// May blocks run over the seam of a source that closes on itself, with x beyond its edges?
     bool across_seam = true;
+    /// How many pixels beyond its edges the target has, across and down, on either side; only of one that is one piece.
+    Size overscan = {};
     /// The costs that things are taken to have: by default costs_of() the map.
     std::optional<PlanCosts> costs = {};
 };

@@ -13,9 +13,16 @@
 
 namespace anamorph {
 
+/// The pieces of a map's target with its overscan.
+inline std::vector<Box> with_overscan(std::vector<Box> pieces, const Size& overscan) {
+    if (pieces.size() == 1) pieces[0] = widened(pieces[0], overscan);
+    return pieces;
+}
+
 template <class Map>
 FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options, const ReadOrders& orders)
-    : BlockMap(map.target_size().width, map.target_size().height, map.target_pieces()),
+    : BlockMap(map.target_size().width, map.target_size().height,
+               with_overscan(map.target_pieces(), options.overscan)),
       m_map(map),
       m_options(options),
       m_orders(orders) {

@@ -14,13 +14,14 @@ void lay_over(const float* over, const float* under, int channels, int alpha, fl
     for (int c = 0; c < channels; ++c) to[c] = rest == 0 ? over[c] : over[c] + rest * under[c];
 }
 
-Backdrop::Backdrop(const std::vector<float>& color, const Source* picture, int alpha, const Size& screen,
+Backdrop::Backdrop(const std::vector<float>& color, const Source* picture, int alpha, const Box& covered,
                    Filter filter, int channels, const AlphaChannel& front)
     : m_picture(picture),
       m_alpha(alpha),
       m_channels(channels),
       m_front(front),
       m_filter(filter),
+      m_covered(covered),
       m_color(static_cast<std::size_t>(channels)) {
     std::copy_n(color.begin(), std::min(color.size(), m_color.size()), m_color.begin());
     const auto opaque = static_cast<std::size_t>(front.channel);
@@ -28,8 +29,8 @@ Backdrop::Backdrop(const std::vector<float>& color, const Source* picture, int a
     if (front.straight()) associate_alpha(m_color.data(), channels, front.channel);
     if (!picture) return;
     const Size size = picture->size(0);
-    m_step = {static_cast<double>(size.width) / screen.width, 0, 0,
-              static_cast<double>(size.height) / screen.height};
+    m_step = {static_cast<double>(size.width) / covered.width(), 0, 0,
+              static_cast<double>(size.height) / covered.height()};
     m_texel.resize(static_cast<std::size_t>(picture->channels()) + 16);
     m_over = m_color;
     m_chooser.emplace(*picture);
@@ -39,7 +40,7 @@ Backdrop::Backdrop(const std::vector<float>& color, const Source* picture, int a
 
 /// The picture at a pixel's centre, in its own channels.
 bool Backdrop::sample(int x, int y) {
-    const double u = (x + 0.5) * m_step.x_i, v = (y + 0.5) * m_step.y_j;
+    const double u = (x - m_covered.x0 + 0.5) * m_step.x_i, v = (y - m_covered.y0 + 0.5) * m_step.y_j;
     return m_sampler->sample(m_filter, *m_chooser, m_step, 0, u, v, m_texel.data());
 }
 

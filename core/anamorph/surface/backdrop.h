@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "anamorph/geometry/size.h"
+#include "anamorph/geometry/box.h"
 #include "anamorph/image/filter.h"
 #include "anamorph/image/point_sampler.h"
 
@@ -31,8 +31,8 @@ class Backdrop {
   public:
     /// `color` is in the channels of the picture that lies in front, `front`, as that says of its alpha; channels that it
     /// lacks are 0, alpha 1. `picture` may be null; its colours are the channels besides `alpha`, as many as those of
-    /// the picture in front.
-    Backdrop(const std::vector<float>& color, const Source* picture, int alpha, const Size& screen,
+    /// the picture in front. It covers a part of the screen, and goes on beyond it as at its edges.
+    Backdrop(const std::vector<float>& color, const Source* picture, int alpha, const Box& covered,
              Filter filter, int channels, const AlphaChannel& front);
     Backdrop(const Backdrop&) = delete;
     Backdrop& operator=(const Backdrop&) = delete;
@@ -47,6 +47,7 @@ class Backdrop {
     int m_alpha, m_channels;
     AlphaChannel m_front;
     Filter m_filter;
+    Box m_covered;
     Jacobian m_step;
     std::vector<float> m_color, m_texel, m_over;
     std::optional<FootprintChooser> m_chooser;

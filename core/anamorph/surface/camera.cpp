@@ -21,7 +21,8 @@ constexpr double kNear = 1e-3;
 
 }  // namespace
 
-Camera::Camera(const CameraPose& pose, const glm::dmat3& matrix, const glm::dvec3& offset, const Size& screen)
+Camera::Camera(const CameraPose& pose, const glm::dmat3& matrix, const glm::dvec3& offset, const Size& screen,
+               const Size& overscan)
     : m_screen(screen), m_perspective(pose.perspective) {
     const glm::dvec3 ahead = pose.target - pose.position;
     const double distance = glm::length(ahead);
@@ -39,8 +40,8 @@ Camera::Camera(const CameraPose& pose, const glm::dmat3& matrix, const glm::dvec
     m_turn = glm::dmat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
     m_matrix = m_turn * matrix;
     m_offset = m_turn * (offset - pose.position);
-    m_focal =
-        m_perspective ? screen.width / (2 * std::tan(pose.fov * (kPi / 360))) : screen.width / pose.extent;
+    const int width = screen.width - 2 * overscan.width;
+    m_focal = m_perspective ? width / (2 * std::tan(pose.fov * (kPi / 360))) : width / pose.extent;
     m_near = m_perspective ? kNear * distance : -std::numeric_limits<double>::infinity();
 }
 

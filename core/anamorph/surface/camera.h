@@ -24,8 +24,10 @@ struct CameraPose {
 /// to the right, y down and z ahead, in units of space.
 class Camera {
   public:
-    /// Throws Error where the position is the target or `up` is parallel to the line between them.
-    Camera(const CameraPose& pose, const glm::dmat3& matrix, const glm::dvec3& offset, const Size& screen);
+    /// `overscan`: the pixels of the screen on either side, across and down, that the pose's field of view does not count. Throws
+    /// Error where the position is the target or `up` is parallel to the line between them.
+    Camera(const CameraPose& pose, const glm::dmat3& matrix, const glm::dvec3& offset, const Size& screen,
+           const Size& overscan = {});
 
     const Size& screen() const { return m_screen; }
     bool perspective() const { return m_perspective; }

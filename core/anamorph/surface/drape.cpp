@@ -6,7 +6,9 @@
 #include <cmath>
 #include <deque>
 #include <glm/geometric.hpp>
+#include <optional>
 
+#include "anamorph/image/mirrored_source.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/strips.h"
@@ -338,13 +340,16 @@ void Drape::light_pixel(const Spot& spot, float* pixel, int channels, const Alph
 
 struct Drape::Layers {
     const Source& source;
+    const Source* back;  ///< mirrored; null where both sides have the same
     const Source* backdrop;
     AlphaChannel alpha;  ///< of the source, and so of the picture
 
     bool has_backdrop(const DrapeOptions& options) const { return backdrop || !options.background.empty(); }
     /// Behind a picture of these options.
     std::unique_ptr<Backdrop> make_backdrop(const DrapeOptions& options, const Size& screen) const {
-        return std::make_unique<Backdrop>(options.background, backdrop, options.backdrop_alpha, screen,
+        const Box covered{options.overscan.width, options.overscan.height,
+                          screen.width - options.overscan.width, screen.height - options.overscan.height};
+        return std::make_unique<Backdrop>(options.background, backdrop, options.backdrop_alpha, covered,
                                           options.filter, source.channels(), alpha);
     }
 };
@@ -381,9 +386,10 @@ class Drape::EdgePainter {
         : m_drape(drape),
           m_layers(layers),
           m_chooser(layers.source),
-          m_sampler(layers.source, drape.m_picture.maps.front().layers.front().border),
+          m_sampler(layers.source, border()),
           m_part(static_cast<std::size_t>(layers.source.channels()) + 16),
           m_under(m_part) {
+        if (layers.back) m_back_sampler.emplace(*layers.back, border());
         if (layers.has_backdrop(drape.m_options))
             m_backdrop = layers.make_backdrop(drape.m_options, {drape.m_map->width(), drape.m_map->height()});
     }
@@ -408,6 +414,7 @@ class Drape::EdgePainter {
     }
 
   private:
+    const Border& border() const { return m_drape.m_picture.maps.front().layers.front().border; }
     /// What a part shows, multiplied with its alpha.
     bool read(const EdgePart& part) {
         const int channels = m_layers.source.channels();
@@ -417,8 +424,10 @@ class Drape::EdgePainter {
         m_drape.weigh(spot, part.x, part.y);
         const Jacobian jacobian = map.jacobian_of(*spot.facet, part.x, part.y);
         const Size& size = map.picture();
-        const bool ok = m_sampler.sample(m_drape.m_options.filter, m_chooser, jacobian, 0,
-                                         part.u * size.width, part.v * size.height, m_part.data());
+        const bool of_back = m_back_sampler && m_drape.shows_back(*spot.facet, part.x, part.y);
+        PointSampler& sampler = of_back ? *m_back_sampler : m_sampler;
+        const bool ok = sampler.sample(m_drape.m_options.filter, m_chooser, jacobian, 0, part.u * size.width,
+                                       part.v * size.height, m_part.data());
         if (m_drape.m_options.lighting.shading == DrapeShading::none) return ok;
         if (alpha.straight()) unassociate_alpha(m_part.data(), channels, alpha.channel);
         m_drape.light_pixel(spot, m_part.data(), channels, alpha);
@@ -430,6 +439,7 @@ class Drape::EdgePainter {
     const Layers& m_layers;
     FootprintChooser m_chooser;
     PointSampler m_sampler;
+    std::optional<PointSampler> m_back_sampler;
     std::unique_ptr<Backdrop> m_backdrop;
     std::vector<float> m_part, m_under;
 };
@@ -460,18 +470,53 @@ bool Drape::draw_edges(const Layers& layers, const Box& box, const Canvas& canva
     return ok;
 }
 
+bool Drape::shows_back(const Facet& facet, double x, double y) const {
+    // Seen from the front, the picture is not turned over.
+    const Jacobian j = m_map->jacobian_of(facet, x, y);
+    return j.x_i * j.y_j - j.x_j * j.y_i < 0;
+}
+
+bool Drape::draw_back(const Picture& picture, const Source& back, const Box& box, const ImageView& view,
+                      const ParallelFor& parallel_for) const {
+    struct Pixel {
+        int x, y;
+    };
+    std::vector<Pixel> seen;
+    const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
+    for_regions(*m_map, inside, [&](const SeenPixels& pixels, const Box& part) {
+        for (int y = part.y0; y < part.y1; ++y)
+            for (int x = part.x0; x < part.x1; ++x) {
+                const Spot at = spot(pixels, x, y);
+                if (at.facet && shows_back(*at.facet, x + 0.5, y + 0.5)) seen.push_back({x, y});
+            }
+    });
+    if (seen.empty()) return true;
+    const std::ptrdiff_t pixel = std::ptrdiff_t{view.channels} * size_of(view.type);
+    std::vector<std::byte> drawn(static_cast<std::size_t>(pixel * box.width() * box.height()));
+    const ImageView to = packed_view(drawn.data(), view.type, box.width(), box.height(), view.channels);
+    if (!picture.draw(&back, box, to, parallel_for)) return false;
+    for (const Pixel& p : seen)
+        std::copy_n(to.at(p.x - box.x0, p.y - box.y0), pixel, view.at(p.x - box.x0, p.y - box.y0));
+    return true;
+}
+
 bool Drape::draw(const Source* source, const Box& box, const ImageView& view, const ParallelFor& parallel_for,
-                 const Source* backdrop) const {
+                 const Source* backdrop, const Source* back) const {
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
     if (!source) return m_picture.draw(source, box, view, parallel_for);
     // Sources that keep no sums are lent a place for them.
     std::deque<Pyramid> lent;
     if (m_options.filter == Filter::summed_area)
-        for (const Source** s : {&source, &backdrop})
+        for (const Source** s : {&source, &backdrop, &back})
             if (*s && !(*s)->summed_areas()) *s = &lent.emplace_back(**s);
     const int straight = source->unassociated_alpha();
-    const Layers layers{*source, backdrop, {straight >= 0 ? straight : m_options.alpha, straight < 0}};
+    std::optional<MirroredSource> mirrored;
+    if (back) mirrored.emplace(*back);
+    const Layers layers{*source,
+                        back ? &*mirrored : nullptr,
+                        backdrop,
+                        {straight >= 0 ? straight : m_options.alpha, straight < 0}};
     Picture picture = m_picture;
     std::atomic<bool> ok{true};
     if (m_options.lighting.shading != DrapeShading::none || layers.has_backdrop(m_options))
@@ -479,6 +524,7 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
             if (!finish(rows, layers)) ok = false;
         };
     if (!picture.draw(source, box, view, parallel_for)) return false;
+    if (layers.back && !draw_back(picture, *layers.back, box, view, parallel_for)) return false;
     const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
     return ok && (!averages(m_options.filter) || draw_edges(layers, inside, Canvas(view, box), parallel_for));
 }

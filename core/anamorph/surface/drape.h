@@ -64,6 +64,7 @@ struct DrapeOptions {
     std::vector<float> background;  ///< channel by channel; 0 for channels that it lacks, and 1 for alpha
     int alpha = -1;                 ///< the channel of the picture's alpha, multiplied in or not, or -1
     int backdrop_alpha = -1;        ///< the channel of alpha of the picture behind, or -1
+    Size overscan = {};  ///< pixels on either side that the picture behind does not cover but goes on in
 };
 
 /// A surface's patches, and room to draw in, which views of it share.
@@ -99,9 +100,10 @@ class Drape {
     static constexpr int kMostCounted = 1 << 24;
 
     /// Draws the pixels of `box`; sources are read for colour only. `backdrop`: a picture that fills the screen behind the
-    /// surface and over the background. False when one could not be read.
+    /// surface and over the background. `back`: the picture on the surface's far side, with the size and the channels of the other;
+    /// seen from there it is the right way round. False when one could not be read.
     bool draw(const Source* source, const Box& box, const ImageView& view, const ParallelFor& parallel_for,
-              const Source* backdrop = nullptr) const;
+              const Source* backdrop = nullptr, const Source* back = nullptr) const;
 
   private:
     /// A pixel on the facet that is seen there.
@@ -111,6 +113,11 @@ class Drape {
     void weigh(Spot& spot, double x, double y) const;
     /// The layers that the pixels of a picture in colour are made of.
     struct Layers;
+    /// Is the far side of the surface seen at a point of the screen?
+    bool shows_back(const Facet& facet, double x, double y) const;
+    /// Draws the pixels that show the far side again. `picture`: how, whichever side it is.
+    bool draw_back(const Picture& picture, const Source& back, const Box& box, const ImageView& view,
+                   const ParallelFor& parallel_for) const;
     bool draw_edges(const Layers& layers, const Box& box, const Canvas& canvas,
                     const ParallelFor& parallel_for) const;
     /// Draws edge pixels; one per thread.

@@ -4,6 +4,7 @@
 
 struct Eac : CubeFamily {
     static constexpr int columns = 3, rows = 2;
+    static constexpr bool has_oblong_faces = true;
     static constexpr double per_radian = 4 / std::numbers::pi;
 
     static double aspect(double) { return 2.0 / 3; }

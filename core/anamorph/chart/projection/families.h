@@ -21,6 +21,12 @@ struct AnyProjection {
     /// The distance of the centres of faces from the middle of the plane, along x and along y, where faces are parts of one
     /// picture; 0 where each has a plane of its own.
     static constexpr double face_centre = 0;
+    /// May faces be oblong in pixels, as those of films are?
+    static constexpr bool has_oblong_faces = false;
+    /// Is the middle of the picture straight behind?
+    static constexpr bool looks_back = false;
+    /// Does the picture depend on the distance d?
+    static constexpr bool has_distance = false;
     /// Is every direction seen by the face that it is nearest to?
     static bool faces_see_all(const Setting&) { return true; }
     static constexpr Lensed lensed = Lensed::no;

@@ -26,6 +26,9 @@ ANAMORPH_PROJECTION(sinusoidal, Sinusoidal)
 ANAMORPH_PROJECTION(hammer, Hammer)
 ANAMORPH_PROJECTION(dual_fisheye, DualFisheye)
 ANAMORPH_PROJECTION(octahedral, Octahedral)
+ANAMORPH_PROJECTION(mirror_ball, MirrorBall)
+ANAMORPH_PROJECTION(unified, Unified)
+ANAMORPH_PROJECTION(dual_fisheye_tb, DualFisheyeTb)
 #else
 #include "anamorph/chart/projection/families.h"
 
@@ -46,5 +49,8 @@ ANAMORPH_PROJECTION(octahedral, Octahedral)
 #include "anamorph/chart/projection/hammer.h"
 #include "anamorph/chart/projection/dual_fisheye.h"
 #include "anamorph/chart/projection/octahedral.h"
+#include "anamorph/chart/projection/mirror_ball.h"
+#include "anamorph/chart/projection/unified.h"
+#include "anamorph/chart/projection/dual_fisheye_tb.h"
 #endif
 // clang-format on

@@ -4,6 +4,7 @@
 
 struct Pannini : AnyProjection {
     static constexpr FieldOfView fov{180, 360, true};
+    static constexpr bool has_distance = true;
 
     /// The lower limit of cos a: nearer to the back the picture turns round (d > 1) or its scale has no end. Where it is -1 / d
     /// it is rounded towards 0: near -1 an angle changes by many times what its cosine does.
@@ -44,9 +45,15 @@ struct Pannini : AnyProjection {
     }
     template <class T>
     static T sees(const Ray<T>& r, const Setting& s) {
-        const T rho = across_length(r), far = (rho * s.distance.d + r.z) * s.reach;
-        return min(min(T(r.z - rho * least_cosine(s)), min(T(far - r.x), T(far + r.x))),
-                   min(T(far - r.y), T(far + r.y)));
+        return sees_before(r, across_length(r), s);
+    }
+    /// A ray that makes an angle with cosine z / length with the axis is seen before that is least, and where its point is within the
+    /// setting's reach.
+    template <class T>
+    static T sees_before(const Ray<T>& r, const T& length, const Setting& s) {
+        const T far = (length * s.distance.d + r.z) * s.reach;
+        return min(T(r.z - length * least_cosine(s)),
+                   min(min(T(far - r.x), T(far + r.x)), min(T(far - r.y), T(far + r.y))));
     }
     /// The local ray, with k = X^2 / (d + 1)^2: (k + 1) cos a = sqrt(1 + k - k d^2) - k d, from X (d + cos a) = (d + 1) sin a.
     template <class T>

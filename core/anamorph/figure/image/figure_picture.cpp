@@ -132,14 +132,16 @@ struct FigurePicture::Impl {
     }
 
     /// Color and alpha of what lies behind all bodies, in a pixel.
-    glm::dvec4 background(int x, int y, Textures& open) const {
+    glm::dvec4 background(int of_x, int of_y, Textures& open) const {
         glm::dvec4 color(0.0);
+        const int x = of_x - look.overscan.width, y = of_y - look.overscan.height;
+        const Size shown{size.width - 2 * look.overscan.width, size.height - 2 * look.overscan.height};
         const std::vector<BackgroundBand>& bands = look.bands.empty() ? frame.bands : look.bands;
         if (look.background)
             color = glm::dvec4(*look.background, 1);
         else if (!bands.empty())
-            color = band_color(bands, y, size.height);
-        FigureBackdrop* picture = open.backdrop(size);
+            color = band_color(bands, y, shown.height);
+        FigureBackdrop* picture = open.backdrop(shown);
         return picture ? picture->color(x, y, color) : color;
     }
 

@@ -49,6 +49,8 @@ struct FigureLook {
     std::vector<BackgroundBand> bands;     ///< the background; by default the frame's, or transparent
     bool backdrop = false;                 ///< a picture as large as the drawn one covers the background; its
                                            ///< source comes after those of the textures
+    Size overscan = {};                    ///< pixels on either side that background and backdrop do not
+                                           ///< count: they go on there as at the picture's edges
     BodyMapping mapping = BodyMapping::latlong;
     Filter filter = Filter::antialias;                   ///< how textures are sampled
     TextureAverage average = TextureAverage::footprint;  ///< how Filter::antialias averages textures

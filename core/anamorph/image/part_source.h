@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of an image as an image of its own: one of several that stand above each other.
+// A part of an image as an image of its own: one of several that stand above each other, or side by side.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace anamorph {
 
-/// Rows [first, first + rows) of level 0 of a source, and of as many of its levels as the strip begins and ends with a row
-/// of. The base is kept by reference.
-class StripSource final : public Source {
+/// The pixels `part` of level 0 of a source, and of as many of its levels as the part begins and ends with a pixel of. The
+/// base is kept by reference.
+class PartSource final : public Source {
   public:
-    StripSource(const Source& base, int first, int rows);
+    PartSource(const Source& base, const Box& part);
 
     PixelType type() const noexcept override { return m_base.type(); }
     int channels() const noexcept override { return m_base.channels(); }
@@ -21,26 +21,23 @@ class StripSource final : public Source {
     Size size(int level) const noexcept override { return at(level).size; }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override {
-        return m_base.read(level, moved(level, box), texels, row_stride);
+        return m_base.read(level, in_base(level, box), texels, row_stride);
     }
     const ConstImageView* view(int level) const noexcept override {
         return at(level).view.data ? &at(level).view : nullptr;
     }
     bool prepare(int level, const Box& box) const noexcept override {
-        return m_base.prepare(level, moved(level, box));
+        return m_base.prepare(level, in_base(level, box));
     }
 
   private:
     struct Level {
-        int first;  ///< first row in the base
+        int x0, y0;  ///< the first pixel, in the base
         Size size;
         ConstImageView view;  ///< without data where the base has none
     };
     const Level& at(int level) const noexcept { return m_levels[static_cast<std::size_t>(level)]; }
-    Box moved(int level, const Box& box) const noexcept {
-        const int first = at(level).first;
-        return {box.x0, box.y0 + first, box.x1, box.y1 + first};
-    }
+    Box in_base(int level, const Box& box) const noexcept { return moved(box, at(level).x0, at(level).y0); }
 
     const Source& m_base;
     std::vector<Level> m_levels;

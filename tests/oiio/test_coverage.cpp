@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// output=coverage and alpha=: how much of a pixel its source covers. The truth is a source that is white: what is drawn of it, with
+// black beyond its edges.
+#include <cmath>
+
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using testing::HasSubstr;
+
+class Coverage : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("plate.exr", 120, 80);
+        write_panorama("bytes.png", 120, 80, OIIO::TypeUInt8);
+        write_panorama("rgba.exr", 120, 80, OIIO::TypeFloat, 4);
+        ASSERT_EQ(run("oiiotool --pattern constant:color=1 120x80 1 -d float -o white.exr").status, 0);
+        write_text("grid.json", R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [[-0.1, 0.05],
+            [0.5, -0.2], [1.3, 0], [0, 0.5], [0.55, 0.47], [1.1, 0.5], [0.2, 1], [0.5, 1.2], [1, 0.9]]})");
+        write_text("lines.json", R"({"features": [{"line": [[40, 30, 80, 40], [50, 25, 90, 50]]}]})");
+    }
+};
+
+/// Recipes with %s in place of each source.
+const std::string kRecipes[] = {
+    "v.pano?src=%s&from=rectilinear&srcfov=90&fov=110&yaw=20&pitch=10&size=100x80",
+    "v.pano?src=%s&from=fisheye&srcfov=170&fov=110&yaw=50&size=100x80",
+    "v.pano?src=%s&from=latlong&srcfov=200&fov=110&yaw=100&size=50x40",
+    "v.pano?src=%s&from=rectilinear&srcfov=90&to=formula&ray_z=0.3+r&size=100x80",
+    "v.lens?src=%s&lens=3de4:k1=-0.3",
+    "v.map?src=%s&u=x*3-100+10*sin(y/7)&v=y*2.5-60",
+    "v.map?src=%s&u=x*8-300&v=y*0.2+sqrt(x-20)",
+    "v.warp?src=%s&mesh=grid.json",
+    "v.warp?src=%s&mesh=grid.json&direction=push",
+    "v.morph?a=%s&b=%s&features=lines.json&wrap=black&t=1.5&t_color=0.4",
+};
+std::string of(std::string recipe, const std::string& source) {
+    for (std::size_t at; (at = recipe.find("%s")) != std::string::npos;) recipe.replace(at, 2, source);
+    return recipe;
+}
+
+TEST_F(Coverage, IsWhatAWhiteSourceShows) {
+    for (const std::string& recipe : kRecipes)
+        for (const std::string filter : {"antialias", "bilinear", "bicubic", "nearest"}) {
+            SCOPED_TRACE(recipe + " " + filter);
+            const std::string keys = "&filter=" + filter;
+            const std::vector<float> truth = read_floats(of(recipe, "white.exr") + keys),
+                                     found = read_floats(of(recipe, "plate.exr") + keys + "&output=coverage");
+            EXPECT_LT(largest_difference(found, truth), 1e-6);
+            double sum = 0;
+            for (const float value : found) sum += value;
+            EXPECT_GT(sum, 0.05 * static_cast<double>(found.size()));
+            EXPECT_LT(sum, 0.999 * static_cast<double>(found.size()));
+        }
+}
+
+// Whatever stands beyond the edges, only what the source has itself covers.
+TEST_F(Coverage, DoesNotDependOnWrap) {
+    const std::string map = "v.map?src=plate.exr&u=x+30.25&v=y-10.5&filter=bilinear&output=coverage";
+    const std::vector<float> cover = read_floats(map);
+    for (const std::string wrap : {"black", "clamp", "periodic", "mirror"})
+        EXPECT_EQ(read_floats(map + "&wrap=" + wrap), cover) << wrap;
+    EXPECT_FLOAT_EQ(cover[120 * 20 + 0], 1);
+    EXPECT_FLOAT_EQ(cover[120 * 20 + 89], 0.75f);
+    EXPECT_FLOAT_EQ(cover[120 * 20 + 90], 0);
+    EXPECT_FLOAT_EQ(cover[120 * 10 + 5], 0.5f);
+}
+
+// A whole panorama covers every direction.
+TEST_F(Coverage, IsOneOfWholePanoramas) {
+    write_panorama("globe.exr", 128, 64);
+    write_panorama("cube.exr", 32, 192);
+    for (const std::string from :
+         {"globe.exr&from=latlong", "cube.exr&from=cubemap", "globe.exr&from=sinusoidal"})
+        for (const float value :
+             read_floats("v.pano?src=" + from + "&to=fisheye&fov=360&size=64&output=coverage&yaw=20"))
+            ASSERT_TRUE(value == 0 || std::fabs(value - 1) < 1e-6f) << from << " " << value;
+}
+
+TEST_F(Coverage, IsTheAlphaThatIsAskedFor) {
+    for (const std::string& recipe : kRecipes) {
+        SCOPED_TRACE(recipe);
+        const std::string drawn = of(recipe, "plate.exr");
+        const Pixels with = read_pixels(drawn + "&alpha=1");
+        ASSERT_EQ(with.spec.nchannels, 4);
+        EXPECT_EQ(with.spec.alpha_channel, 3);
+        EXPECT_EQ(with.spec.channelnames[3], "A");
+        const std::vector<float> color = read_floats(drawn), cover = read_floats(drawn + "&output=coverage"),
+                                 all = read_floats(drawn + "&alpha=1");
+        for (std::size_t i = 0; i < cover.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(all[4 * i + c], color[3 * i + c]) << i;
+            ASSERT_EQ(all[4 * i + 3], cover[i]) << i;
+        }
+        expect_one_picture(drawn + "&alpha=1", 20, 10);
+    }
+}
+
+TEST_F(Coverage, IsOfTheSourcesType) {
+    const std::string map = "v.map?src=bytes.png&u=x+30.25&v=y&filter=bilinear&alpha=1";
+    const Pixels all = read_pixels(map);
+    EXPECT_EQ(all.spec.format, OIIO::TypeUInt8);
+    ASSERT_EQ(all.spec.nchannels, 4);
+    EXPECT_EQ(all.bytes[4 * 10 + 3], std::byte{255});
+    EXPECT_EQ(all.bytes[4 * 89 + 3], std::byte{191});
+    EXPECT_EQ(all.bytes[4 * 90 + 3], std::byte{0});
+    // Moved pixels of integers have one too.
+    EXPECT_EQ(read_pixels("v.map?src=bytes.png&u=x+30&v=y&filter=nearest&alpha=1").bytes[4 * 90 + 3],
+              std::byte{0});
+    // In another colour space alpha stays what it is.
+    const Pixels linear =
+        read_pixels("v.map?src=bytes.png&u=x+30.25&v=y&filter=bilinear&alpha=1&colorspace=scene_linear");
+    EXPECT_EQ(linear.bytes[4 * 89 + 3], std::byte{191});
+    EXPECT_EQ(linear.bytes[4 * 10], all.bytes[4 * 10]);
+}
+
+TEST_F(Coverage, StaysWhatItIsWhereTheSourceHasAlpha) {
+    EXPECT_EQ(read_pixels("v.map?src=rgba.exr&u=x+30.25&alpha=1"),
+              read_pixels("v.map?src=rgba.exr&u=x+30.25"));
+}
+
+// The chain is drawn from the first source, and covered by it.
+TEST_F(Coverage, GoesThroughChains) {
+    const std::string inner = "(v.lens?lens=3de4:k1=-0.3&src=%s)",
+                      chain = "v.map?u=x*1.3-20&v=y*1.2&src=" + inner;
+    const std::vector<float> truth = read_floats(of(chain, "white.exr"));
+    EXPECT_LT(
+        largest_difference(
+            read_floats(of("v.map?u=x*1.3-20&v=y*1.2&output=coverage&src=" + inner, "plate.exr")), truth),
+        1e-6);
+    for (const std::string with :
+         {"v.map?u=x*1.3-20&v=y*1.2&alpha=1&src=(v.lens?lens=3de4:k1=-0.3&src=%s)",
+          "v.map?u=x*1.3-20&v=y*1.2&src=(v.lens?lens=3de4:k1=-0.3&alpha=1&src=%s)"}) {
+        SCOPED_TRACE(with);
+        const std::string name = of(with, "plate.exr");
+        EXPECT_EQ(open(name)->spec().get_string_attribute("anamorph:chain"), "map of lens");
+        const std::vector<float> all = read_floats(name);
+        ASSERT_EQ(all.size(), 4 * truth.size());
+        for (std::size_t i = 0; i < truth.size(); ++i) ASSERT_NEAR(all[4 * i + 3], truth[i], 1e-6) << i;
+    }
+}
+
+TEST_F(Coverage, OfDrapesIsTheirOwn) {
+    const std::string drape =
+        "v.drape?src=plate.exr&surface=cylinder&angle=200&camera=0.2,0.3,2.2&size=90x70";
+    for (const std::string keys : {"", "&filter=bilinear", "&overscan=9", "&scheme=oka"}) {
+        SCOPED_TRACE(keys);
+        const std::vector<float> color = read_floats(drape + keys),
+                                 cover = read_floats(drape + keys + "&output=coverage"),
+                                 all = read_floats(drape + keys + "&alpha=1");
+        ASSERT_EQ(all.size(), 4 * cover.size());
+        for (std::size_t i = 0; i < cover.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(all[4 * i + c], color[3 * i + c]) << i;
+            ASSERT_EQ(all[4 * i + 3], cover[i]) << i;
+        }
+    }
+    EXPECT_THAT(open_error(drape + "&alpha=1&background=1,1,1"), HasSubstr("together with background"));
+}
+
+TEST_F(Coverage, IsRefusedWhereColorsAreNotFaded) {
+    for (const std::string wrap : {"clamp", "periodic", "mirror"})
+        EXPECT_THAT(open_error("v.map?src=plate.exr&alpha=1&wrap=" + wrap),
+                    HasSubstr("must be given with wrap=black"));
+    EXPECT_THAT(open_error("v.morph?a=plate.exr&b=plate.exr&features=lines.json&alpha=1"),
+                HasSubstr("must be given with wrap=black"));
+    EXPECT_THAT(open_error("v.pano?src=plate.exr&from=latlong&alpha=1&scheme=hardware"),
+                HasSubstr("must not be given with scheme=hardware"));
+}
+
+}  // namespace
+}  // namespace anamorph
