@@ -183,12 +183,50 @@ void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
          "Exif:FocalLength=" + shortest(static_cast<float>(length)));
 }
 
+/// The beginnings of the names of Cryptomatte's channels: its metadata name each layer, cryptomatte/1234567/name.
+std::vector<std::string> cryptomatte_layers(const ImageSpec& spec) {
+    std::vector<std::string> layers;
+    for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+        const std::string name = attribute.name().string();
+        if (Strutil::istarts_with(name, "cryptomatte/") && Strutil::iends_with(name, "/name"))
+            layers.push_back(attribute.get_string());
+    }
+    return layers;
+}
+
+/// Is a channel one of ids or of depth, by its name?
+bool is_named_as_data(const std::string& channel) {
+    const std::string name = channel.substr(channel.find_last_of('.') + 1);
+    for (const char* known : {"Z", "ZBack", "depth", "id"})
+        if (Strutil::iequals(name, known)) return true;
+    return name.ends_with("Id") || name.ends_with("ID") || Strutil::iends_with(name, "_id");
+}
+
+/// The channels that hold no colour.
+std::vector<int> data_channels_of(const ImageSpec& spec) {
+    const std::vector<std::string> layers = cryptomatte_layers(spec);
+    std::vector<int> channels;
+    for (int c = 0; c < spec.nchannels && c < static_cast<int>(spec.channelnames.size()); ++c) {
+        const std::string& name = spec.channelnames[static_cast<std::size_t>(c)];
+        const bool is_matte = std::any_of(layers.begin(), layers.end(), [&](const std::string& layer) {
+            // CryptoObject00.R, CryptoObject01.G ... hold ids and their shares.
+            const std::string rest = name.substr(std::min(layer.size(), name.size()));
+            return name.starts_with(layer) && !rest.empty() &&
+                   (rest[0] == '.' || std::isdigit(static_cast<unsigned char>(rest[0])));
+        });
+        if (c != spec.alpha_channel && (is_matte || is_named_as_data(name))) channels.push_back(c);
+    }
+    return channels;
+}
+
 }  // namespace
 
 SourceFacts facts_of(const ImageSpec& spec) {
     const Frame frame = frame_of(spec);
     SourceFacts facts{frame.width, frame.height, {}, {}, {}};
     facts.has_alpha = spec.alpha_channel >= 0;
+    facts.channel_names = spec.channelnames;
+    facts.data_channels = data_channels_of(spec);
     if (const SourceLevel level = frame.level(); !(level.extent == SourceLevel(level.size).extent))
         facts.overscan = level.extent;
     read_focal_length(spec, facts);
@@ -275,7 +313,8 @@ bool moves_stored(const PictureRequest& picture, const std::vector<ImageSpec>& s
            shown.channelformats == first.channelformats;
 }
 
-ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, bool stored) {
+ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, bool stored,
+                       bool keeps_types) {
     ImageSpec spec = source ? *source : ImageSpec();
     const Box display = picture.shown();
     spec.x = -display.x0;
@@ -289,11 +328,14 @@ ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, b
     spec.depth = spec.full_depth = 1;
     spec.tile_width = spec.tile_height = 0;
     spec.tile_depth = 1;
+    const bool color = picture.pixels == PixelKind::color;
     if (!stored) {
-        spec.channelformats.clear();
+        if (color && keeps_types && !spec.channelformats.empty())
+            spec.format = OIIO::TypeFloat;
+        else
+            spec.channelformats.clear();
         spec.format = oiio_type(pixel_type(spec.format));
     }
-    const bool color = picture.pixels == PixelKind::color;
     if (!color)
         set_channels(spec, picture.pixels == PixelKind::point    ? std::vector<std::string>{"R", "G"}
                            : picture.pixels == PixelKind::vector ? std::vector<std::string>{"R", "G", "B"}
@@ -303,6 +345,7 @@ ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, b
     else if (picture.adds_alpha) {
         spec.alpha_channel = spec.nchannels++;
         spec.channelnames.emplace_back("A");
+        if (!spec.channelformats.empty()) spec.channelformats.push_back(spec.channelformats.front());
     }
     check_size(spec);
     OIIO::ParamValueList kept;

@@ -24,9 +24,10 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
 
 /// The picture's header: its size and channels, the metadata of the upright source that still holds, and what
 /// the picture says of itself. No tiles. `source`: the first one, null where there is none. Throws Error where
-/// the picture is larger than OpenImageIO's attribute limits:imagesize_MB. `stored`: as moves_stored() says.
+/// the picture is larger than OpenImageIO's attribute limits:imagesize_MB. `stored`: as moves_stored() says. `keeps_types`:
+/// may channels be of several types, as those of the source are?
 OIIO::ImageSpec picture_spec(const OIIO::ImageSpec* source, const PictureRequest& picture,
-                             bool stored = false);
+                             bool stored = false, bool keeps_types = false);
 
 /// Are a picture's pixels those of one of its sources as they are stored, since they are only moved and the core has no
 /// numbers for them? `space`: the color space to filter in, if any.

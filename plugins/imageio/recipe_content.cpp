@@ -207,6 +207,8 @@ class RecipeContent final : public Content {
         const Level& l = this->level(subimage, level);
         const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
+        if (!m_stored && !l.header.channelformats.empty())
+            return read_types(l, *solved, box, pixels, small ? serial_for : own_threads());
         const StoredPixels as = m_stored ? stored_pixels(l.header)
                                          : StoredPixels{pixel_type(l.header.format), l.header.nchannels};
         draw_picture(solved->picture(), *m_stacks, box,
@@ -236,6 +238,26 @@ class RecipeContent final : public Content {
         std::once_flag once;
         ImageSpec spec;  ///< the header with what was reached
     };
+
+    /// Draws channels of several types: in float, and then each in its own.
+    void read_types(const Level& level, const Solved& solved, const Box& box, std::byte* pixels,
+                    const ParallelFor& parallel_for) const {
+        const ImageSpec& spec = level.header;
+        const auto count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()),
+                   channels = static_cast<std::size_t>(spec.nchannels);
+        std::vector<float> drawn(count * channels);
+        draw_picture(solved.picture(), *m_stacks, box,
+                     packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32, box.width(),
+                                 box.height(), spec.nchannels),
+                     parallel_for);
+        const auto pixel = static_cast<OIIO::stride_t>(spec.pixel_bytes(true)),
+                   floats = static_cast<OIIO::stride_t>(channels * sizeof(float));
+        for (int c = 0; c < spec.nchannels; ++c)
+            OIIO::convert_image(1, box.width(), box.height(), 1, drawn.data() + c, OIIO::TypeFloat, floats,
+                                floats * box.width(), OIIO::AutoStride,
+                                pixels + (c > 0 ? spec.pixel_bytes(0, c, true) : 0), spec.channelformat(c),
+                                pixel, pixel * box.width(), OIIO::AutoStride);
+    }
 
     struct OpenSource {
         std::unique_ptr<CacheSource> image;
@@ -369,7 +391,7 @@ class RecipeContent final : public Content {
             Level& made = found->second;
             made.request = *m_pictures->picture(subimage, number);
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
-            made.header = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored);
+            made.header = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored, true);
             if (!m_part.empty()) say_part(made.header);
             if (!m_said_of_chain.empty()) made.header.attribute("anamorph:chain", m_said_of_chain);
             if (m_joined)

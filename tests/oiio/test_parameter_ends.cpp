@@ -108,6 +108,13 @@ class ParameterEnds : public InFolder {
             add(of.empty() ? "to" : "from", "rectilinear");
             if (key == of + "sensor") arguments.push_back({of + "focal", "24"});
         }
+        if (key == "face") {
+            add("to", "cubemap");
+            arguments.push_back({"size", "4x4"});
+        }
+        if (key == "eye") add("stereo", "side-by-side");
+        if (key == "samples") add("shutter", "1");
+        if (key == "alpha" && operation.name == "morph") add("wrap", "black");
         if (key == "surface" && value == "positions") add("positions", "city.exr");
         if (key == "frame" && operation.name == "pano") add("to", "formula");
         if (key == "frame" && operation.name == "figure") {

@@ -73,8 +73,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * The distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
-     * kb4. Default: none.
+     * The distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4
+     * or division. Default: none.
      */
     vtkSetStringMacro(Lens);
     vtkGetStringMacro(Lens);

@@ -31,7 +31,7 @@ const Border& border_of(const Picture& picture) {
 std::string mismatch(const Picture& outer, const Picture& inner, const MapLink& to, const Box& shown) {
     const Border& border = border_of(outer);
     const Chart& chart = border.chart();
-    if (outer.filter != inner.filter) return "the filters differ";
+    if (outer.filter != inner.filter || !(outer.data == inner.data)) return "the filters differ";
     if (inner.output != Output::color) return "its source is no picture in colour";
     const bool ends = border.wrap() == Wrap::automatic || (border.wrap() == Wrap::black && !chart.closed());
     if (!ends) return "wrap goes on beyond its source's edges";

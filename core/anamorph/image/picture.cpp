@@ -317,7 +317,7 @@ bool Picture::draw(const std::vector<const Source*>& sources, const Box& box, co
                    const ParallelFor& parallel_for) const {
     const bool shows_alpha = adds_alpha && shows_color();
     if (!shows_alpha && (value || output != Output::coverage))
-        return draw_pixels(sources, box, view, parallel_for);
+        return draw_channels(sources, box, view, parallel_for);
     std::deque<CoverageSource> covers;
     std::vector<const Source*> covered;
     for (const Source* source : sources) covered.push_back(source ? &covers.emplace_back(*source) : nullptr);
@@ -327,8 +327,26 @@ bool Picture::draw(const std::vector<const Source*>& sources, const Box& box, co
     Picture colors = *this;
     colors.adds_alpha = false;
     const int last = view.channels - 1;
-    const bool ok = colors.draw_pixels(sources, box, channels_of(view, 0, last), parallel_for);
+    const bool ok = colors.draw_channels(sources, box, channels_of(view, 0, last), parallel_for);
     return coverage.draw_pixels(covered, box, channels_of(view, last, 1), parallel_for) && ok;
+}
+
+bool Picture::draw_channels(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+                            const ParallelFor& parallel_for) const {
+    if (!draw_pixels(sources, box, view, parallel_for)) return false;
+    const bool is_mixed = maps.size() > 1 || maps.front().layers.size() > 1;
+    if (data.channels.empty() || data.filter == filter || !shows_color() || is_mixed) return true;
+    Picture of_data = *this;
+    of_data.filter = data.filter;
+    const std::ptrdiff_t channel = size_of(view.type), pixel = view.channels * channel;
+    std::vector<std::byte> drawn(static_cast<std::size_t>(pixel * box.width() * box.height()));
+    const ImageView from = packed_view(drawn.data(), view.type, box.width(), box.height(), view.channels);
+    if (!of_data.draw_pixels(sources, box, from, parallel_for)) return false;
+    for (int y = 0; y < box.height(); ++y)
+        for (int x = 0; x < box.width(); ++x)
+            for (const int c : data.channels)
+                std::copy_n(from.at(x, y) + c * channel, channel, view.at(x, y) + c * channel);
+    return true;
 }
 
 bool Picture::draw_pixels(const std::vector<const Source*>& sources, const Box& of_picture,

@@ -42,6 +42,14 @@ constexpr bool ends_at_edges(Wrap wrap, Output output) {
            output == Output::coverage;
 }
 
+/// Channels, by number, that are read by a filter of their own.
+struct DataChannels {
+    std::vector<int> channels = {};
+    Filter filter = Filter::nearest;
+
+    friend bool operator==(const DataChannels&, const DataChannels&) = default;
+};
+
 /// Pixels of a box of the picture, row by row.
 struct PixelRows {
     Box box;
@@ -76,6 +84,9 @@ struct Picture {
     /// target. ST-maps need a single layer.
     std::vector<Map> maps;
     Filter filter = Filter::antialias;
+    /// Channels of the sources that hold no colour, and the filter they are read by: ids have no mean. Where several sources or
+    /// maps are mixed, all channels are.
+    DataChannels data = {};
     Output output = Output::color;
     /// Has colour one channel more than the sources, the last: their coverage?
     bool adds_alpha = false;
@@ -125,6 +136,9 @@ struct Picture {
   private:
     /// The picture of the sources' coverage, as a colour.
     Picture of_coverage() const;
+    /// Draws colours or what stands for them: all channels by the one filter, then those of data by their own.
+    bool draw_channels(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+                       const ParallelFor& parallel_for) const;
     bool draw_pixels(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
                      const ParallelFor& parallel_for) const;
 };

@@ -55,6 +55,7 @@ Picture warped_picture(const WarpMap& map, const Size& source, const Size& targe
     const Chart flat(Projection::rectilinear, source.width, source.height);
     Picture picture = picture_through(plan, Border(flat, options.wrap), options.filter, options.output);
     picture.adds_alpha = options.adds_alpha;
+    picture.data = options.data;
     if (options.folds) picture.value = [plan](double x, double y) { return plan->folds(x, y); };
     picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
         return {{"anamorph:folded_fraction", folded_fraction(*plan, parallel_for)}};

@@ -15,6 +15,7 @@ struct MeshWarpOptions {
     WarpScheme scheme = WarpScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel in double, whose rounding is the bound
     Filter filter = Filter::antialias;
+    DataChannels data = {};
     Wrap wrap = Wrap::automatic;  ///< automatic is black
     Output output = Output::color;
     /// Shows, in place of `output`, 0 where the map is one to one, else for a map that pulls 1 where it shows

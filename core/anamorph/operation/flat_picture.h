@@ -25,6 +25,7 @@ struct FlatRequest {
     std::shared_ptr<const Attributes> says = {};  ///< attributes besides the tolerance, if there are any
     std::optional<Box> display = {};              ///< the display window, where the target is another
     bool adds_alpha = false;                      ///< as Picture has it
+    DataChannels data = {};
 
     Size source_size() const { return {source.width(), source.height()}; }
 };

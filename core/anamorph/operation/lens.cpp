@@ -2,6 +2,7 @@
 // A lens's distortion taken off a picture, or put on one.
 #include "anamorph/lens/lens_plan.h"
 #include "anamorph/operation/flat_picture.h"
+#include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 
 namespace anamorph {
@@ -43,6 +44,8 @@ ParameterTable make_lens_table() {
         tile(),
         mip(),
         filter(),
+        data_channels(),
+        data_filter(),
         wrap("is black"),
         tol(),
         scheme({{"auto", Scheme::automatic},
@@ -59,6 +62,7 @@ ParameterTable make_lens_table() {
 /// The picture as the lens gives it, and what was taken for its field of view, if that was not said outright.
 struct Observed {
     Chart chart;
+    bool has_fov = false;  ///< is its field of view known?
     std::shared_ptr<const Attributes> says = {};
 };
 
@@ -79,7 +83,7 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
     const auto with = [&](double fov, std::shared_ptr<const Attributes> says = {}) {
         return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model),
-                        std::move(says)};
+                        by_focal_length, std::move(says)};
     };
     // Of the other models nothing depends on it.
     if (!by_focal_length) return with(Chart::default_fov(projection));
@@ -107,6 +111,25 @@ Box in_middle_of(const Size& larger, const Size& size) {
     return {x, y, x + size.width, y + size.height};
 }
 
+/// What the picture says of itself: of which field of view it was taken, and, where that is known, what it shows.
+std::shared_ptr<const Attributes> said_of(const Observed& observed, LensMode mode, const Size& target) {
+    auto says = std::make_shared<Attributes>();
+    if (observed.says) *says = *observed.says;
+    const Chart& chart = observed.chart;
+    if (!observed.has_fov) return says;
+    const LensModel& model = chart.lens()->model();
+    const double width = plane_width(chart.projection(), chart.fov()) / chart.width() * target.width,
+                 fov = fov_of_plane_width(chart.projection(), width);
+    // A picture that shows more than its projection can has no field of view, nor one whose lens's centre stays beside its middle.
+    const bool is_centred = model.values[model.values.size() - 2] == 0 && model.values.back() == 0;
+    if (!(plane_width(chart.projection(), fov) >= width * (1 - 1e-9)) || !is_centred) return says;
+    const Chart shown(chart.projection(), target.width, target.height,
+                      target.width == chart.width() ? chart.fov() : fov, PixelSpacing::edges, "", 1,
+                      mode == LensMode::distort ? model : LensModel{});
+    for (Attribute& attribute : panorama_attributes(shown, false)) says->push_back(std::move(attribute));
+    return says;
+}
+
 std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height};
     const auto mode = chosen<LensMode>(values, "mode");
@@ -122,7 +145,7 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
         throw Error("overscan", printable(values.text("overscan")),
                     "must not be given together with size=all, which is as much as there is");
     FlatRequest request = flat_request(values, facts, target);
-    request.says = observed.says;
+    request.says = said_of(observed, mode, target);
     if (!(target == asked)) request.display = in_middle_of(target, asked);
     return flat_pictures(request, [request, observed, mode](const Size& pixels) {
         return FlatMap{std::make_shared<LensPlan>(

@@ -35,6 +35,8 @@ ParameterTable make_map_table() {
         tile(),
         mip(),
         filter(),
+        data_channels(),
+        data_filter(),
         wrap("is black"),
         tol(),
         scheme({{"auto", Scheme::automatic},

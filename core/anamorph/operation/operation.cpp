@@ -63,6 +63,8 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         if (const std::optional<Box>& all = facts.overscan)
             key += " of " + std::to_string(all->x0) + "," + std::to_string(all->y0) + " to " +
                    std::to_string(all->x1) + "," + std::to_string(all->y1);
+        for (const std::string& name : facts.channel_names) key += " \"" + name + "\"";
+        for (const int channel : facts.data_channels) key += " data " + std::to_string(channel);
         if (image.alpha >= 0) key += " alpha=" + std::to_string(image.alpha);
         key += "\n";
     }

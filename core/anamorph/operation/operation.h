@@ -55,6 +55,9 @@ struct SourceFacts {
     std::optional<Box> overscan = {};
     /// Has it a channel of alpha?
     bool has_alpha = false;
+    /// The names of its channels, and the numbers of those that it says or that are known to hold no colour: ids and depth.
+    std::vector<std::string> channel_names = {};
+    std::vector<int> data_channels = {};
 };
 
 /// A source as its host has opened it.

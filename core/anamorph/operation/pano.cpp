@@ -165,6 +165,8 @@ ParameterTable make_pano_table() {
         tile(),
         mip(),
         filter(),
+        data_channels(),
+        data_filter(),
         wrap("goes on across the seam, the poles and cube edges"),
         tol(),
         enumeration(
@@ -498,6 +500,7 @@ ReprojectOptions read_reproject_options(const ParameterValues& values, const Sou
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
     options.source_overscan = source.overscan.has_value();
+    if (values.knows("data_filter")) options.data = rows::data_of(values, source);
     options.adds_alpha = rows::adds_alpha(values, source.has_alpha,
                                           options.wrap == Wrap::automatic || options.wrap == Wrap::black);
     return options;

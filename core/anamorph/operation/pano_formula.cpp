@@ -121,6 +121,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
     FlatRequest request{source.chart, size,           plan_options(options), options.filter,
                         options.wrap, options.output, saying(source.says())};
     request.adds_alpha = options.adds_alpha;
+    request.data = options.data;
     const Orientation look = read_orientation(values), held = read_held(values, facts, source);
     return flat_pictures(
         request, [formula = formula_of(text, setting), request, look, held](const Size& pixels) {
@@ -175,6 +176,10 @@ bool has_formula(const ParameterValues& values) {
         if (values.given(row.name))
             throw Error(row.name, printable(values.text(row.name)),
                         "is of to=formula: must not be given without it");
+    const bool has_time = values.given("keys") || values.given("shutter");
+    if (values.given("frame") && !has_time)
+        throw Error("frame", printable(values.text("frame")),
+                    "is of to=formula, of keys and of shutter: must not be given without one of them");
     values.refuse_definitions();
     return false;
 }

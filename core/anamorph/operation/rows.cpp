@@ -241,6 +241,45 @@ Parameter filter(const std::vector<Word>& own) {
         "antialias is bilinear where the map magnifies" + (own.empty() ? "" : "; " + meanings_of(own)));
 }
 
+Parameter data_channels() {
+    return text(
+        "data_channels",
+        "the names of channels that hold no color, as in Z,id; none: all hold color; by default those of "
+        "Cryptomatte by its metadata, and those that are named Z, ZBack, depth or id or end in Id, ID or "
+        "_id");
+}
+
+Parameter data_filter() {
+    Parameter row = filter();
+    row.name = "data_filter";
+    row.default_value = "nearest";
+    row.documentation = "of channels that hold no color, in place of filter; nearest mixes nothing";
+    return row;
+}
+
+DataChannels data_of(const ParameterValues& values, const SourceFacts& facts) {
+    DataChannels data{facts.data_channels, chosen<Filter>(values, "data_filter")};
+    if (!values.given("data_channels")) return data;
+    data.channels.clear();
+    const std::string& all = values.text("data_channels");
+    if (all == "none") return data;
+    for (std::size_t at = 0; at <= all.size();) {
+        const std::size_t end = std::min(all.find(',', at), all.size());
+        const std::string name = all.substr(at, end - at);
+        const auto found = std::find(facts.channel_names.begin(), facts.channel_names.end(), name);
+        if (found == facts.channel_names.end()) {
+            std::string names;
+            for (const std::string& known : facts.channel_names) names += (names.empty() ? "" : ", ") + known;
+            throw Error(
+                "data_channels", printable(all),
+                "must be none, or some of the source's channels, " + printable(names) + ", with commas");
+        }
+        data.channels.push_back(static_cast<int>(found - facts.channel_names.begin()));
+        at = end + 1;
+    }
+    return data;
+}
+
 Parameter wrap(const std::string& automatic) {
     return enumeration("wrap", "automatic",
                        {{"automatic", Wrap::automatic},

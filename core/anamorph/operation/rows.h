@@ -12,6 +12,7 @@
 
 #include "anamorph/geometry/size.h"
 #include "anamorph/image/picture.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/parameter/number_row.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -62,6 +63,11 @@ Parameter colorspace(const std::string& doc);
 
 /// The row of filters: those that all operations share, then the operation's own.
 Parameter filter(const std::vector<Word>& own = {});
+/// The rows of channels that hold no colour: which these are, and how they are filtered.
+Parameter data_channels();
+Parameter data_filter();
+/// Which channels of a source these are, and how they are read. Throws Error.
+DataChannels data_of(const ParameterValues& values, const SourceFacts& facts);
 /// The row `wrap`. `automatic`: what that is here, "is black".
 Parameter wrap(const std::string& automatic);
 /// The row of schemes. The words auto, exact, blocks, residual, direct and hardware mean the same everywhere

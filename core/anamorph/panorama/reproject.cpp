@@ -22,6 +22,7 @@ Picture reprojected_picture(const Panorama& map, const ReprojectOptions& options
                                       Border(map.source(), options.wrap), options.filter, options.output);
     picture.overscan = options.overscan;
     picture.adds_alpha = options.adds_alpha;
+    picture.data = options.data;
     return picture;
 }
 

@@ -15,6 +15,7 @@ struct ReprojectOptions {
     Scheme scheme = Scheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double
     Filter filter = Filter::antialias;
+    DataChannels data = {};
     Wrap wrap = Wrap::automatic;
     Output output = Output::color;
     /// Has the source texels beyond the edges of its picture (Source::extent) that are to be drawn?
