@@ -181,6 +181,47 @@ TEST(FeaturesSvg, PicturesInLayersAreTheFrames) {
     EXPECT_EQ(f.frame(1).height, 40);
 }
 
+TEST(FeaturesSvg, EllipsesAreCurves) {
+    const auto points = [](const std::string& shape) {
+        const Features f = parse_features_svg(svg(shape, shape), "e.svg");
+        std::vector<Point<double>> all;
+        for (std::size_t i = 0; i < f.size(); ++i) all.push_back(f.line(i, 1).p);
+        return all;
+    };
+    const auto circle = points(R"x(<circle id="c" cx="100" cy="50" r="40"/>)x");
+    ASSERT_GE(circle.size(), 8u);
+    EXPECT_NEAR(circle[0].x, 140, 1e-12);
+    EXPECT_NEAR(circle[0].y, 50, 1e-12);
+    EXPECT_GT(circle[1].y, 50);
+    for (const Point<double>& p : circle) EXPECT_NEAR(std::hypot(p.x - 100, p.y - 50), 40, 40 * 3e-4);
+    for (const Point<double>& p :
+         points(R"x(<ellipse id="c" cx="10" cy="20" rx="30" ry="5" transform="scale(2,1)"/>)x"))
+        EXPECT_NEAR(std::hypot((p.x - 20) / 60, (p.y - 20) / 5), 1, 3e-4);
+    EXPECT_THAT(message(parse_features_svg, svg(R"x(<circle id="c" r="0"/>)x", "")),
+                HasSubstr("radii above 0"));
+}
+
+TEST(FeaturesSvg, LayersSayTheirNamesAndPictures) {
+    const std::string line = R"x(<path id="p" d="M 1 2 3 4"/>)x";
+    const auto picture = [](const std::string& link) {
+        return R"x(<image width="10" height="10" )x" + link + "/>";
+    };
+    const Features f = parse_features_svg(
+        svg(picture(R"x(xlink:href="../shots/cat.png")x") + line,
+            picture(R"x(href="data:image/png;base64,AAAA")x") + R"x(<path id="p-1" d="M 5 6 7 8"/>)x"),
+        "t.svg");
+    EXPECT_EQ(f.title(0), "A");
+    EXPECT_EQ(f.title(1), "B");
+    EXPECT_EQ(f.picture(0), "cat.png");
+    EXPECT_EQ(f.picture(1), "");
+    const Features turned = f.in_order({1, 0});
+    EXPECT_EQ(turned.title(0), "B");
+    EXPECT_EQ(turned.picture(1), "cat.png");
+    EXPECT_EQ(turned.line(0, 0).p.x, 5);
+    EXPECT_EQ(turned.line(0, 1).p.x, 1);
+    EXPECT_EQ(turned.frame(0).width, f.frame(1).width);
+}
+
 TEST(FeaturesSvg, BadFilesAreNamed) {
     const auto bad = [](const std::string& text) { return message(parse_features_svg, text); };
     const std::string line = R"x(<path id="p" d="M 1 2 3 4"/>)x";
@@ -201,6 +242,10 @@ TEST(FeaturesSvg, BadFilesAreNamed) {
                 HasSubstr("path p-1: transform: turn"));
     EXPECT_THAT(bad(svg(line, R"x(<path id="p-1" d="M 1 2 1 2"/>)x")),
                 HasSubstr("p: p=1,2,1,2: a line needs a length"));
+    const std::string eye = R"x(<path id="e1" inkscape:label="eye" d="M 1 2 3 4"/>)x",
+                      other = R"x(<path id="e2" inkscape:label="eye" d="M 5 6 7 8"/>)x";
+    EXPECT_THAT(bad(svg(eye + other, eye)), HasSubstr("eye in layer A: its label is there twice"));
+    EXPECT_THAT(bad(svg(eye, eye + other)), HasSubstr("eye in layer B: its label is there twice"));
     std::string deep;
     for (int i = 0; i < 5000; ++i) deep += "<g>";
     deep += line;

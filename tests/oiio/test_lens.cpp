@@ -210,5 +210,26 @@ TEST_F(LensRecipe, RefusesWhatItCannotDo) {
     EXPECT_THAT(open_error("ramp.exr.lens?lens=ptlens:b=-0.02&mode=both"), HasSubstr("undistort, distort"));
 }
 
+// Both ways the picture says what it shows, so that no key is needed to read it.
+TEST_F(LensRecipe, SaysWhatItsPictureIs) {
+    write_panorama("plate.exr", 96, 64);
+    const auto said = [](const std::string& name) {
+        return std::string(open(name)->spec().get_string_attribute("panoramaProjection"));
+    };
+    const std::string lens = "lens=brown:k1=-0.1,k2=0.02&fov=70";
+    EXPECT_EQ(said("plate.exr.lens?" + lens), "rectilinear fov=70");
+    EXPECT_EQ(said("plate.exr.lens?mode=distort&" + lens), "rectilinear fov=70 lens=brown:k1=-0.1,k2=0.02");
+    EXPECT_EQ(said("plate.exr.lens?mode=distort&lens=kb4:k1=0.05&fov=150"),
+              "fisheye fov=150 lens=kb4:k1=0.05");
+    // Twice as many pixels of the same size show more; what has no field of view says none.
+    EXPECT_EQ(said("plate.exr.lens?size=192x128&" + lens).substr(0, 21), "rectilinear fov=108.9");
+    EXPECT_EQ(said("plate.exr.lens?lens=3de4:k1=-0.1"), "");
+    ASSERT_EQ(run("oiiotool 'plate.exr.lens?mode=distort&" + lens + "' -o bent.exr").status, 0);
+    EXPECT_EQ(
+        read_floats("bent.exr.pano?fov=60&size=40x30"),
+        read_floats(
+            "bent.exr.pano?from=rectilinear&srcfov=70&srclens=brown:k1=-0.1,k2=0.02&fov=60&size=40x30"));
+}
+
 }  // namespace
 }  // namespace anamorph

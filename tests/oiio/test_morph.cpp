@@ -330,5 +330,34 @@ TEST_F(Morph, WhatFailsSaysWhyInALine) {
     EXPECT_EQ(bytes(itself), bytes(expected));
 }
 
+// Which layer is which picture's its link says, or else the order; the picture says what was taken.
+TEST_F(Morph, LayersBelongToThePicturesThatTheyLinkTo) {
+    const auto layer = [](const std::string& label, const std::string& link, const std::string& path) {
+        return "<g inkscape:groupmode=\"layer\" inkscape:label=\"" + label +
+               "\"><image width=\"120\" height=\"96\" xlink:href=\"" + link + "\"/><path id=\"p_" + label +
+               "\" d=\"" + path + "\"/></g>";
+    };
+    const std::string head = "<svg xmlns:inkscape=\"i\" xmlns:xlink=\"x\">";
+    const std::string of_a = layer("one", "shots/a.exr", "M 30 20 90 30"),
+                      of_b = layer("two", "b.exr", "M 40 24 85 40");
+    write_text("straight.svg", head + of_a + of_b + "</svg>");
+    write_text("turned.svg", head + of_b + of_a + "</svg>");
+    write_text("renamed.svg", head + layer("two", "x.exr", "M 40 24 85 40") +
+                                  layer("one", "y.exr", "M 30 20 90 30") + "</svg>");
+    const auto drawn = [](const std::string& file) {
+        return read_floats("a.exr.morph?b=b.exr&features=" + file);
+    };
+    const auto said = [](const std::string& file) {
+        return std::string(
+            open("a.exr.morph?b=b.exr&features=" + file)->spec().get_string_attribute("anamorph:shapes"));
+    };
+    EXPECT_EQ(drawn("turned.svg"), drawn("straight.svg"));
+    EXPECT_GT(largest_difference(drawn("renamed.svg"), drawn("straight.svg")), 0.01);
+    EXPECT_EQ(said("straight.svg"), "a is layer one, b is layer two");
+    EXPECT_EQ(said("turned.svg"), "a is layer one, b is layer two");
+    EXPECT_EQ(said("renamed.svg"), "a is layer two, b is layer one");
+    EXPECT_EQ(said("lines.csv"), "");
+}
+
 }  // namespace
 }  // namespace anamorph

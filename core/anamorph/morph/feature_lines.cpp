@@ -119,6 +119,8 @@ Point<double> on_cubic(const Point<double>* c, double t) {
 Features::Features(int shapes) : m_shapes(shapes) {
     if (shapes < 2) throw Error("shapes", std::to_string(shapes), "a morph needs two or more");
     m_frames.resize(static_cast<std::size_t>(shapes));
+    m_titles.resize(m_frames.size());
+    m_pictures.resize(m_frames.size());
 }
 
 std::string Features::name(std::size_t i) const {
@@ -192,6 +194,24 @@ void Features::pin_border(double weight) {
     if (!(weight >= 0 && std::isfinite(weight)))
         throw Error("pin_border", shortest(weight), "must be a finite number of at least 0");
     m_border = weight;
+}
+
+void Features::set_title(int shape, const std::string& title, const std::string& picture) {
+    m_titles[static_cast<std::size_t>(shape)] = title;
+    m_pictures[static_cast<std::size_t>(shape)] = picture;
+}
+
+Features Features::in_order(const std::vector<int>& shapes) const {
+    Features ordered = *this;
+    const auto count = static_cast<std::size_t>(m_shapes);
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto from = static_cast<std::size_t>(shapes[k]);
+        ordered.m_frames[k] = m_frames[from];
+        ordered.m_titles[k] = m_titles[from];
+        ordered.m_pictures[k] = m_pictures[from];
+        for (std::size_t i = 0; i < size(); ++i) ordered.m_lines[i * count + k] = m_lines[i * count + from];
+    }
+    return ordered;
 }
 
 void Features::set_frame(int shape, const Frame& frame) {

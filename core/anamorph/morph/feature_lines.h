@@ -71,6 +71,13 @@ class Features {
 
     /// The size of the picture for which a shape's lines are given; {0, 0}: any size that the picture has.
     Frame frame(int shape) const { return m_frames[static_cast<std::size_t>(shape)]; }
+    /// What its file calls a shape, and the name of the picture that the file says it was drawn on; empty where it says neither.
+    const std::string& title(int shape) const { return m_titles[static_cast<std::size_t>(shape)]; }
+    const std::string& picture(int shape) const { return m_pictures[static_cast<std::size_t>(shape)]; }
+    /// Sets title() and picture().
+    void set_title(int shape, const std::string& title, const std::string& picture);
+    /// The same features with their shapes in another order: of each its number now.
+    Features in_order(const std::vector<int>& shapes) const;
     /// Sets frame(). Throws Error unless the size is above 0 and at most 1e9 pixels either way.
     void set_frame(int shape, const Frame& frame);
 
@@ -80,6 +87,7 @@ class Features {
     std::vector<double> m_weights;
     std::vector<std::string> m_names;
     std::vector<Frame> m_frames;
+    std::vector<std::string> m_titles, m_pictures;
     double m_border = 0;
 };
 

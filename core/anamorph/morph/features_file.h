@@ -20,8 +20,9 @@
 // (ax0,ay0,...).
 //
 // SVG as Inkscape writes it: every layer (a group with inkscape:groupmode="layer") is a key shape, the lowest
-// layer first; layers without any lines (pictures, notes) are passed over. Read are line, polyline, polygon
-// (closed) and path elements (M L H V C S Q T Z, absolute and relative; quadratic curves are raised to
+// layer first; layers without any lines (pictures, notes) are passed over. The name of the picture that a layer links to
+// (Features::picture) may say another order. Read are line, polyline, polygon (closed), circle, ellipse (curves from
+// their right end on downwards) and path elements (M L H V C S Q T Z, absolute and relative; quadratic curves are raised to
 // cubics; arcs are refused) at any depth in groups, with their transform attributes. Drawings of two layers
 // belong together when their inkscape:label is the same, or their id: ids are unique in a file, so the
 // id of the other layers' drawing may have a tail after a "-" or "_" ("brow" and "brow-5", which Inkscape

@@ -243,6 +243,24 @@ std::vector<Chain> read_points(std::string_view text, bool closed) {
     return {chain};
 }
 
+/// An ellipse as four cubics, from its right end on downwards: off by 0.0003 of its radius.
+Chain ellipse_of(const pugi::xml_node& node, bool is_circle) {
+    const Vertex c{number_of(node, "cx"), number_of(node, "cy")};
+    const double rx = number_of(node, is_circle ? "r" : "rx"), ry = is_circle ? rx : number_of(node, "ry");
+    if (!(rx > 0 && ry > 0)) throw Error("must have radii above 0");
+    // 4 / 3 tan(pi / 8): the middle of each cubic lies on the ellipse.
+    const double k = 4.0 / 3 * (std::sqrt(2.0) - 1);
+    const Vertex along[] = {{rx, 0}, {0, ry}, {-rx, 0}, {0, -ry}};
+    const auto at = [&](double x, double y) { return Vertex{c.x + x, c.y + y}; };
+    Chain chain{at(rx, 0), {}};
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const Vertex &a = along[quarter], &b = along[(quarter + 1) % 4];
+        chain.segments.push_back(
+            {false, {at(a.x + k * b.x, a.y + k * b.y), at(b.x + k * a.x, b.y + k * a.y)}, at(b.x, b.y)});
+    }
+    return chain;
+}
+
 /// The chains of an element, in its own units; none for elements that are not lines.
 std::vector<Chain> chains_of(const pugi::xml_node& node) {
     const std::string_view tag = node.name();
@@ -254,6 +272,7 @@ std::vector<Chain> chains_of(const pugi::xml_node& node) {
     if (tag == "polyline" || tag == "polygon")
         return read_points(node.attribute("points").value(), tag == "polygon");
     if (tag == "path") return PathReader(node.attribute("d").value()).read();
+    if (tag == "circle" || tag == "ellipse") return {ellipse_of(node, tag == "circle")};
     return {};
 }
 
@@ -273,6 +292,7 @@ struct Layer {
     /// holds one.
     std::optional<Transform> to_picture;
     Features::Frame frame;
+    std::string picture = {};  ///< the name of that picture's file
 };
 
 class DocumentReader {
@@ -337,6 +357,11 @@ class DocumentReader {
         if (!(layer.frame.width > 0 && layer.frame.height > 0))
             throw Error("an image needs a width and a height in user units");
         layer.to_picture = (transform * corner).inverse();
+        const pugi::xml_attribute link =
+            node.attribute("xlink:href") ? node.attribute("xlink:href") : node.attribute("href");
+        const std::string_view name = link.value();
+        // What is stored in the file itself has no name.
+        if (!name.starts_with("data:")) layer.picture = name.substr(name.find_last_of("/\\") + 1);
     }
 
     static void move(Layer& layer) {
@@ -388,7 +413,8 @@ std::vector<std::vector<const Drawing*>> partners(const std::vector<Layer>& laye
     Names labels, ids;
     for (std::size_t i = 0; i < first.drawings.size(); ++i) {
         const Drawing& drawing = first.drawings[i];
-        if (!drawing.label.empty()) labels.emplace(drawing.label, i);
+        if (!drawing.label.empty() && !labels.emplace(drawing.label, i).second)
+            fail(file, in_layer(drawing, first), "its label is there twice: must be there once in a layer");
         if (!ids.emplace(without_layer(drawing.id, first.label), i).second)
             fail(file, in_layer(drawing, first), "its id is not the only one");
         ids.emplace(drawing.id, i);
@@ -406,7 +432,9 @@ std::vector<std::vector<const Drawing*>> partners(const std::vector<Layer>& laye
                      "layer " + excerpt(first.label) + " has nothing with this id");
             if (found[*i][k])
                 fail(file, in_layer(drawing, layers[k]),
-                     "two drawings belong to " + excerpt(first.drawings[*i].name()));
+                     !drawing.label.empty() && drawing.label == found[*i][k]->label
+                         ? "its label is there twice: must be there once in a layer"
+                         : "two drawings belong to " + excerpt(first.drawings[*i].name()));
             found[*i][k] = &drawing;
         }
         for (const auto& shapes : found)
@@ -482,8 +510,10 @@ Features parse_features_svg(std::string_view text, std::string_view name) {
         in_entry(name, entry, [&] { add_drawing(features, shapes); });
         check_feature_count(features, name, entry);
     }
-    for (std::size_t k = 0; k < layers.size(); ++k)
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        features.set_title(static_cast<int>(k), layers[k].label, layers[k].picture);
         if (layers[k].to_picture) features.set_frame(static_cast<int>(k), layers[k].frame);
+    }
     return features;
 }
 

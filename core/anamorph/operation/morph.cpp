@@ -156,6 +156,30 @@ void check_alike(const std::vector<SourceImage>& sources, const ParameterValues&
     }
 }
 
+/// The shapes in the order of the pictures whose files they are linked to, where each is to another one and they do not stand so.
+std::optional<std::vector<int>> order_by_links(const Features& features, const OperationInput& input) {
+    const auto count = static_cast<std::size_t>(features.shapes());
+    std::vector<int> order;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto file = input.files.find(morph_pictures()[i]);
+        if (file == input.files.end()) return {};
+        // Of a recipe, the picture that it names.
+        const auto is_of = [&](int shape) {
+            const std::string& link = features.picture(shape);
+            return !link.empty() && file->second.name.find(link) != std::string::npos;
+        };
+        int found = -1;
+        for (int k = 0; k < features.shapes(); ++k) {
+            if (!is_of(k)) continue;
+            if (found >= 0) return {};
+            found = k;
+        }
+        if (found < 0 || std::find(order.begin(), order.end(), found) != order.end()) return {};
+        order.push_back(found);
+    }
+    return std::is_sorted(order.begin(), order.end()) ? std::nullopt : std::optional(order);
+}
+
 std::shared_ptr<const Features> read_features(const MorphRequest& request, const OperationInput& input) {
     const auto found = input.files.find("features");
     if (found == input.files.end())
@@ -168,10 +192,22 @@ std::shared_ptr<const Features> read_features(const MorphRequest& request, const
         throw Error("features", printable(file.name),
                     "the file has " + std::to_string(features->shapes()) + " shapes: must have " +
                         std::to_string(pictures) + ", as many as pictures are given");
-    if (!request.pin_border) return features;
-    auto pinned = std::make_shared<Features>(*features);
-    pinned->pin_border(*request.pin_border);
-    return pinned;
+    const std::optional<std::vector<int>> order = order_by_links(*features, input);
+    if (!order && !request.pin_border) return features;
+    auto changed = std::make_shared<Features>(order ? features->in_order(*order) : *features);
+    if (request.pin_border) changed->pin_border(*request.pin_border);
+    return changed;
+}
+
+/// "a is layer cat, b is layer dog"; nothing where shapes have no names.
+std::string named_shapes(const Features& features) {
+    std::string text;
+    for (int k = 0; k < features.shapes(); ++k) {
+        if (features.title(k).empty()) return "";
+        text += (k > 0 ? ", " : "") + morph_pictures()[static_cast<std::size_t>(k)] + " is layer " +
+                features.title(k);
+    }
+    return text;
 }
 
 class Morphs final : public Pictures {
@@ -199,6 +235,8 @@ class Morphs final : public Pictures {
         if (picture.pixels == PixelKind::color && m_request.frames == 1)
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
+        if (const std::string shapes = named_shapes(*m_features); !shapes.empty())
+            picture.says.push_back({"anamorph:shapes", shapes});
         picture.solve = [request, options, features = m_features] {
             return solved(
                 morphed_picture(features, request.pictures, {request.width, request.height}, options));
