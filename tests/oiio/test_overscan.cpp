@@ -224,6 +224,42 @@ TEST_F(Overscan, IsKeptByStockPrograms) {
     EXPECT_GT(seen[3 * 99], 0);
 }
 
+// A chain reads what the picture in the middle has beyond its edges, and no more.
+TEST_F(Overscan, IsReadThroughChains) {
+    const struct {
+        const char *inner, *chain;
+    } cases[] = {
+        {"plate.exr.map?u=x*0.8+7&v=y*0.9+5&overscan=20x12", "map of map"},
+        {"plate.exr.lens?lens=3de4:k1=0.2&overscan=20x12", "map of lens"},
+        {"plate.exr.pano?from=rectilinear&srcfov=90&fov=60&size=120x80&overscan=20x12", "map of pano"},
+        {"plate.exr.lens?lens=3de4:k1=0.2&size=all", "map of lens"}};
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.inner);
+        const std::string outer = "v.map?u=x*1.2-14&v=y*1.1-8&filter=bilinear&tol=0.00001",
+                          chain = outer + "&src=(" + c.inner + "&filter=bilinear&tol=0.00001)";
+        EXPECT_EQ(open(chain)->spec().get_string_attribute("anamorph:chain"), c.chain);
+        ASSERT_EQ(run(std::string("oiiotool '") + c.inner +
+                      "&tol=0.00001&output=coverage&filter=nearest' -o cover.exr")
+                      .status,
+                  0);
+        // Where the picture in the middle has pixels of the plate, around a point and beside it, the chain shows them.
+        const std::vector<float> joined = read_floats(chain + "&output=coverage"),
+                                 cover = read_floats(outer + "&concatenate=0&src=cover.exr");
+        std::size_t shown = 0, differ = 0;
+        for (std::size_t i = 0; i < cover.size(); ++i) {
+            shown += cover[i] == 1;
+            differ += (cover[i] == 1 && joined[i] < 0.5f) || (cover[i] == 0 && joined[i] > 0.5f);
+        }
+        EXPECT_GT(shown, cover.size() / 2);
+        EXPECT_LT(differ, cover.size() / 100);
+        EXPECT_GT(joined[120 * 40 + 8], 0.9f);  // left of the display window of the picture in the middle
+        const std::vector<float> errors = read_floats(chain + "&output=error"),
+                                 bounds = read_floats(chain + "&output=bound");
+        for (std::size_t i = 0; i < errors.size(); ++i)
+            ASSERT_LE(errors[i], bounds[i] * 1.0001f + 1e-12f) << i;
+    }
+}
+
 TEST_F(Overscan, IsRefusedWhereItCannotBe) {
     const auto refused = [](const std::string& recipe, const char* why) {
         EXPECT_THAT(open_error(recipe), HasSubstr(why)) << recipe;

@@ -36,7 +36,9 @@ ChainMap::ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const M
     : m_outer(std::move(outer)),
       m_inner(std::move(inner)),
       m_middle(middle),
-      m_pieces(m_inner->target_pieces()) {}
+      m_pieces(m_inner->target_pieces()) {
+    if (m_pieces.size() == 1) m_pieces[0] = widened(m_pieces[0], middle.overscan);
+}
 
 Point<double> ChainMap::shift_about(double x) const {
     const int period = m_outer->source_period();

@@ -20,8 +20,9 @@ namespace anamorph {
 
 /// The picture in the middle, as the outer map sees it.
 struct MiddlePicture {
-    /// The pixel at which the outer map's coordinates begin: the corner of the display window, where that is not the data window.
+    /// The pixel of the inner map at which the outer map's coordinates begin: the corner of the display window.
     Point<double> origin{0, 0};
+    Size overscan = {};      ///< the inner map's (PlanOptions::overscan)
     bool has_poles = false;  ///< are its first and last row the poles, so that there is nothing beyond them?
 };
 

@@ -66,8 +66,9 @@ Joined joined_picture(const Picture& outer, const Picture& inner, const Box& sho
     if (reason = mismatch(outer, inner, *to, shown); !reason.empty()) return {{}, reason};
 
     const Chart& chart = border_of(outer).chart();
-    const ChainMap map(from, to,
-                       {{double(shown.x0), double(shown.y0)}, chart.closed() && chart.reaches_poles()});
+    const Point<double> corner{double(shown.x0 - inner.overscan.width),
+                               double(shown.y0 - inner.overscan.height)};
+    const ChainMap map(from, to, {corner, inner.overscan, chart.closed() && chart.reaches_poles()});
     Picture picture = outer;
     picture.maps[0].blocks =
         std::make_shared<const ChainPlan>(map, options_of(outer, from->options(), to->options()));

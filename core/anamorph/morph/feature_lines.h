@@ -71,8 +71,9 @@ class Features {
 
     /// The size of the picture for which a shape's lines are given; {0, 0}: any size that the picture has.
     Frame frame(int shape) const { return m_frames[static_cast<std::size_t>(shape)]; }
-    /// What its file calls a shape, and the name of the picture that the file says it was drawn on; empty where it says neither.
+    /// What its file calls a shape; empty where it does not say.
     const std::string& title(int shape) const { return m_titles[static_cast<std::size_t>(shape)]; }
+    /// The name of the picture that a shape was drawn on, as its file says; empty where it does not.
     const std::string& picture(int shape) const { return m_pictures[static_cast<std::size_t>(shape)]; }
     /// Sets title() and picture().
     void set_title(int shape, const std::string& title, const std::string& picture);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/operation/film.h"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -13,6 +13,7 @@ namespace anamorph {
 namespace {
 
 constexpr int kMostSamples = 256;
+constexpr int kMostChecked = 1024;  // moments
 
 struct Shutter {
     double open = 0;  ///< frames
@@ -56,8 +57,9 @@ class FilmPictures final : public Pictures {
   public:
     FilmPictures(Sequence sequence, const Shutter& shutter, MakePictures make)
         : m_sequence(std::move(sequence)), m_shutter(shutter), m_make(std::move(make)) {
-        // What is wrong with a frame is said when the film is opened.
-        for (int i = 0; i < frames(); ++i) check(m_sequence.time_of(i));
+        // What is wrong with a frame is said when the film is opened, of very many when it is read.
+        const int checked = std::min(frames(), kMostChecked / m_shutter.samples);
+        for (int i = 0; i < checked; ++i) check(m_sequence.time_of(i));
     }
 
     int frames() const override { return m_sequence.frames(); }
