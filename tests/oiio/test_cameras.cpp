@@ -381,6 +381,8 @@ TEST_F(Cameras, FacesStandAlone) {
                 HasSubstr("or of to=cubemap"));
     EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap&face=top"), HasSubstr("face"));
     EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap&face=up&size=20x30"), HasSubstr("square"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap&face=up&size=20&fov=70"),
+                HasSubstr("must not be given with face"));
 }
 
 // Films have equi-angular cubes in frames of 16:9.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // output=coverage and alpha=: how much of a pixel its source covers. The truth is a source that is white: what is drawn of it, with
 // black beyond its edges.
+#include <OpenImageIO/imagebufalgo.h>
+
 #include <cmath>
 
 #include "host.h"
@@ -120,6 +122,34 @@ TEST_F(Coverage, IsOfTheSourcesType) {
 TEST_F(Coverage, StaysWhatItIsWhereTheSourceHasAlpha) {
     EXPECT_EQ(read_pixels("v.map?src=rgba.exr&u=x+30.25&alpha=1"),
               read_pixels("v.map?src=rgba.exr&u=x+30.25"));
+}
+
+// Minified, over the seam and at the edges of overscan, alpha is faded as white is.
+TEST_F(Coverage, IsFadedAsColorsAre) {
+    OIIO::ImageSpec spec(150, 100, 3, OIIO::TypeFloat);
+    spec.x = -20;
+    spec.y = -8;
+    spec.full_width = 120;
+    spec.full_height = 80;
+    OIIO::ImageBuf over(spec);
+    const float white[] = {1, 1, 1};
+    OIIO::ImageBufAlgo::fill(over, white);
+    write_image(over, "over.exr");
+    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 200x100 3 -d float -o globe.exr").status, 0);
+    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 90x60 3 -d float -o cube.exr").status, 0);
+    for (const std::string recipe :
+         {"over.exr.pano?from=rectilinear&srcfov=70&fov=150&yaw=20&size=50x40",
+          "over.exr.pano?from=rectilinear&srcfov=70&fov=120&yaw=20&size=50x40",
+          "over.exr.map?u=x*7-300&v=y*9-200",
+          "globe.exr.pano?from=equirectangular&fov=100&size=50x40&yaw=170&wrap=black",
+          "cube.exr.pano?from=cubemap3x2&fov=100&size=50x40&yaw=40&wrap=black",
+          "globe.exr.pano?from=equirectangular&to=fisheye&fov=360&size=40&wrap=black"})
+        for (const std::string filter : {"antialias", "bilinear", "nearest"}) {
+            SCOPED_TRACE(recipe + " " + filter);
+            const std::vector<float> all = read_floats(recipe + "&alpha=1&filter=" + filter);
+            for (std::size_t i = 0; i + 3 < all.size(); i += 4)
+                ASSERT_NEAR(all[i + 3], all[i], 1e-5) << i / 4;
+        }
 }
 
 // The chain is drawn from the first source, and covered by it.

@@ -91,13 +91,18 @@ TEST_F(Films, AreRefusedWhereTheyCannotBe) {
     EXPECT_THAT(open_error(kView + "&samples=4"), HasSubstr("must be given together with shutter"));
     EXPECT_THAT(open_error(kView + "&shutter=0.5&output=stmap"), HasSubstr("several source points"));
     EXPECT_THAT(open_error(kView + "&shutter=-1"), HasSubstr("shutter"));
-    EXPECT_THAT(open_error(kView + "&keys=pan.json&frames=3&frame=1"), HasSubstr("must not be given together with frames"));
+    EXPECT_THAT(open_error(kView + "&keys=pan.json&frames=3&frame=1"),
+                HasSubstr("must not be given together with frames"));
     EXPECT_THAT(open_error("globe.exr.pano?keys=pan.json&shutter=1"),
                 HasSubstr("must be given together with size"));
     write_text("bad.json", R"({"keys": {"fov": [[0, 80], [4, 200]]}})");
     EXPECT_THAT(open_error(kView + "&keys=bad.json"), HasSubstr("frame 4: fov"));
     write_text("no.json", R"({"keys": {"size": [[0, 80]]}})");
     EXPECT_THAT(open_error(kView + "&keys=no.json"), HasSubstr("size"));
+    for (const std::string name : {"shutter", "frame", "samples"}) {
+        write_text("time.json", "{\"keys\": {\"" + name + "\": [[0, 2]]}}");
+        EXPECT_THAT(open_error(kView + "&keys=time.json&frame=2"), HasSubstr(name));
+    }
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ std::string text_of(const Size& size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-/// What a source covers: 1 wherever it has texels. Keeps a reference to it.
+/// What a source covers: 1 wherever it has texels, and on coarser levels as much as of a texel is not beyond its edges. Keeps a
+/// reference to it.
 class CoverageSource final : public Source {
   public:
     explicit CoverageSource(const Source& of) : m_of(of) {}
@@ -30,13 +31,27 @@ class CoverageSource final : public Source {
     int levels() const noexcept override { return m_of.levels(); }
     Size size(int level) const noexcept override { return m_of.size(level); }
     Box extent(int level) const noexcept override { return m_of.extent(level); }
-    bool read(int, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept override {
-        for (int y = 0; y < box.height(); ++y)
-            std::fill_n(reinterpret_cast<float*>(texels + y * row_stride), box.width(), 1.0f);
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override {
+        const Size finest = size(0), here = size(level);
+        const Box all = extent(0);
+        for (int y = box.y0; y < box.y1; ++y) {
+            auto* const row = reinterpret_cast<float*>(texels + (y - box.y0) * row_stride);
+            const double down = part_of_texel(y, all.y0, all.y1, finest.height, here.height);
+            for (int x = box.x0; x < box.x1; ++x)
+                row[x - box.x0] =
+                    static_cast<float>(down * part_of_texel(x, all.x0, all.x1, finest.width, here.width));
+        }
         return true;
     }
 
   private:
+    /// How much of a texel of a level with `side` texels lies between two edges of the finest one.
+    static double part_of_texel(int at, int first, int last, int finest, int side) noexcept {
+        const double scale = static_cast<double>(side) / finest;
+        return std::clamp(std::min(at + 1.0, last * scale) - std::max<double>(at, first * scale), 0.0, 1.0);
+    }
+
     const Source& m_of;
 };
 
@@ -309,7 +324,10 @@ Picture Picture::of_coverage() const {
     coverage.overlay = {};
     coverage.same_as = {};
     for (Map& map : coverage.maps)
-        for (Layer& layer : map.layers) layer.border = Border(layer.border.chart(), Wrap::automatic);
+        for (Layer& layer : map.layers)
+            // A seam is an edge where that is asked for.
+            if (layer.border.wrap() != Wrap::black)
+                layer.border = Border(layer.border.chart(), Wrap::automatic);
     return coverage;
 }
 

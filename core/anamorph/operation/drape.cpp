@@ -110,8 +110,7 @@ ParameterTable look_rows() {
                "default nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
         file("back",
              "the picture on the far side of the surface, as large as src and with as many channels; seen "
-             "from "
-             "there it is the right way round; by default src, as it shows through"),
+             "from there it is the right way round; by default src, as it shows through"),
         image("backdrop",
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),
@@ -130,8 +129,7 @@ ParameterTable look_rows() {
               "1 where the surface is seen in the pixel's middle, else 0"}}),
         toggle("alpha", "0",
                "1: where the picture has no alpha, what is drawn has one: the coverage, by which colors are "
-               "faded; "
-               "without background and backdrop"),
+               "faded; without background and backdrop"),
         flip_v(),
     };
 }

@@ -466,6 +466,10 @@ struct FaceAlone {
 FaceAlone read_face(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
     const glm::dvec3 toward = direction_of_face(values, to);
+    for (const char* name : {"fov", "vfov", "focal", "sensor", "lens"})
+        if (values.given(name))
+            throw Error(name, printable(values.text(name)),
+                        "must not be given with face: a face has 90 degrees");
     const FaceGrid grid = faces_of(to);
     int side = 0;
     if (values.given("size")) {

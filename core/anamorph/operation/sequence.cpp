@@ -39,15 +39,17 @@ void Sequence::read_keys(const std::string& text, const std::string& name) {
         const ParameterTable& table = m_values.table();
         const auto row =
             std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == keys.name; });
-        const bool number = row != table.end() && keys.name != "frame" &&
+        const bool is_of_time = keys.name == "frame" || keys.name == "shutter";
+        const bool number = row != table.end() && !is_of_time &&
                             (row->type == ParameterType::number || row->type == ParameterType::numbers);
         const auto& own = m_values.definitions();
         const bool defined =
             std::any_of(own.begin(), own.end(), [&](const Assignment& a) { return a.key == keys.name; });
         if ((!number || keys.name == "height_smooth") && !defined)
-            text_file::fail(name, printable(keys.name),
-                            "is no key of numbers (but for whole ones and height_smooth), and none "
-                            "that defines a name of a formula");
+            text_file::fail(
+                name, printable(keys.name),
+                "is no key of numbers (but for whole ones, frame, shutter and height_smooth), and none "
+                "that defines a name of a formula");
     }
 }
 
