@@ -228,7 +228,7 @@ def with_input(cls):
     new = cls()
     if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape, anamorph.vtkAnamorphPanoramaView):
         picture = vtkRTAnalyticSource()
-        picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
+        picture.SetWholeExtent(0, 9, 0, 19, 0, 0)  # twice as high as wide, as the last projection is
         picture.Update()
         new.SetInputData(picture.GetOutput())
         if cls is anamorph.vtkAnamorphDrape:
@@ -254,13 +254,13 @@ def with_input(cls):
         for _ in range(2 if cls is anamorph.vtkAnamorphInbetween else 1):
             new.AddInputDataObject(plane.GetOutput())
         if cls is anamorph.vtkAnamorphPanoramaProjection:
-            # Of the largest panorama too, few triangles; square, as the last of the projections needs it.
-            new.SetPanoramaHeight(4096)
+            # Of the largest panorama too, few triangles; twice as high as wide, as the last projection is.
+            new.SetPanoramaHeight(8192)
             new.SetPosition(0, 0, 1)
             new.SetTolerance(1000)
         elif cls is anamorph.vtkAnamorphProjectionBake:
             picture = vtkRTAnalyticSource()
-            picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
+            picture.SetWholeExtent(0, 9, 0, 19, 0, 0)
             new.AddPanoramaConnection(picture.GetOutputPort())
             new.AddProjector(0, 0, 1, 0, 0, -1, 0, 1, 0)
             new.SetWidth(16)
