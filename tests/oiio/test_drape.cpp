@@ -169,6 +169,34 @@ TEST_F(DrapeFiles, KeyFramesAreAFilm) {
               read_pixels(film + "&frame=3").bytes);
 }
 
+// An edge of the surface that crosses the outermost pixels is faded there as it is farther in.
+TEST_F(DrapeFiles, EdgesAreFadedAtTheBordersOfTheScreen) {
+    for (const std::string drape : {"page.exr.drape?rotate=0,30,0&size=120x80",
+                                    "page.exr.drape?surface=sphere&rotate=20,30,0&tol=0.01&size=120x80",
+                                    "page.exr.drape?rotate=0,0,30&size=90x60&camera=0,0,1.7"})
+        for (const std::string output : {"&output=coverage", ""}) {
+            SCOPED_TRACE(drape + output);
+            constexpr int kMore = 8;
+            const auto input = open(drape);
+            const int width = input->spec().width, height = input->spec().height;
+            const std::vector<float> shown = read_floats(drape + output),
+                                     all = read_floats(drape + output + "&overscan=8");
+            const std::size_t channels = shown.size() / static_cast<std::size_t>(width * height);
+            double most = 0;
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    for (std::size_t c = 0; c < channels; ++c) {
+                        const auto at = static_cast<std::size_t>(y * width + x) * channels + c,
+                                   there = static_cast<std::size_t>((y + kMore) * (width + 2 * kMore) + x +
+                                                                    kMore) *
+                                               channels +
+                                           c;
+                        most = std::max(most, double{std::fabs(shown[at] - all[there])});
+                    }
+            EXPECT_LT(most, 0.08);
+        }
+}
+
 // --- the far side ---
 
 TEST_F(DrapeFiles, TheFarSideHasItsOwnPicture) {

@@ -112,6 +112,10 @@ std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, c
     const Seen seen(map, region.pixels());
     SeenPixels samples;
     const auto on_grid = [](int at) { return at - at % kCell; };
+    // What is beside these is not seen: whether the surface ends within them only their samples tell.
+    const auto is_outermost = [&](int x, int y) {
+        return x == 0 || y == 0 || x + 1 == map.width() || y + 1 == map.height();
+    };
     for (int top = on_grid(part.y0); top < part.y1; top += kCell)
         for (int left = on_grid(part.x0); left < part.x1; left += kCell) {
             const Box cell = intersection({left, top, left + kCell, top + kCell}, part);
@@ -119,7 +123,7 @@ std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, c
             Box around{cell.x1, cell.y1, cell.x0, cell.y0};
             for (int y = cell.y0; y < cell.y1; ++y)
                 for (int x = cell.x0; x < cell.x1; ++x) {
-                    if (!seen.edge_at(x, y)) continue;
+                    if (!is_outermost(x, y) && !seen.edge_at(x, y)) continue;
                     edges.push_back({x, y, {}});
                     around = {std::min(around.x0, x), std::min(around.y0, y), std::max(around.x1, x + 1),
                               std::max(around.y1, y + 1)};
@@ -130,6 +134,13 @@ std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, c
                     samples, kEdgeSamples);
             for (std::size_t i = first; i < edges.size(); ++i)
                 edges[i].parts = parts_of(map, samples, edges[i].x, edges[i].y);
+            const auto is_no_edge = [&](const EdgePixel& pixel) {
+                const float covered = pixel.covered();
+                return !seen.edge_at(pixel.x, pixel.y) && (covered == 0 || covered == 1);
+            };
+            edges.erase(
+                std::remove_if(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end(), is_no_edge),
+                edges.end());
         }
     return edges;
 }
