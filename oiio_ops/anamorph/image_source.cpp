@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/image_source.h"
 
+#include "anamorph/metadata.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -550,7 +552,7 @@ std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, 
                     "no way to it from \"" + own + "\": must be the role scene_linear or one of " +
                         joined(spaces_from(own, config)));
     result->m_channels = spec.nchannels;
-    if (unassociated_alpha_of(spec) < 0) result->m_alpha = spec.alpha_channel;
+    if (unassociated_alpha_of(spec) < 0) result->m_alpha = alpha_channel_of(spec);
     return result;
 }
 

@@ -202,29 +202,41 @@ bool is_named_as_data(const std::string& channel) {
     return name.ends_with("Id") || name.ends_with("ID") || Strutil::iends_with(name, "_id");
 }
 
+/// Is a channel one of a layer of Cryptomatte? CryptoObject00.R, CryptoObject01.G and so on hold ids and their shares.
+bool is_matte(const std::string& channel, const std::vector<std::string>& layers) {
+    return std::any_of(layers.begin(), layers.end(), [&](const std::string& layer) {
+        const std::string rest = channel.substr(std::min(layer.size(), channel.size()));
+        const bool goes_on =
+            !rest.empty() && (rest[0] == '.' || std::isdigit(static_cast<unsigned char>(rest[0])));
+        return channel.starts_with(layer) && goes_on;
+    });
+}
+
 /// The channels that hold no colour.
 std::vector<int> data_channels_of(const ImageSpec& spec) {
     const std::vector<std::string> layers = cryptomatte_layers(spec);
     std::vector<int> channels;
     for (int c = 0; c < spec.nchannels && c < static_cast<int>(spec.channelnames.size()); ++c) {
         const std::string& name = spec.channelnames[static_cast<std::size_t>(c)];
-        const bool is_matte = std::any_of(layers.begin(), layers.end(), [&](const std::string& layer) {
-            // CryptoObject00.R, CryptoObject01.G ... hold ids and their shares.
-            const std::string rest = name.substr(std::min(layer.size(), name.size()));
-            return name.starts_with(layer) && !rest.empty() &&
-                   (rest[0] == '.' || std::isdigit(static_cast<unsigned char>(rest[0])));
-        });
-        if (c != spec.alpha_channel && (is_matte || is_named_as_data(name))) channels.push_back(c);
+        if (is_matte(name, layers) || (c != spec.alpha_channel && is_named_as_data(name)))
+            channels.push_back(c);
     }
     return channels;
 }
 
 }  // namespace
 
+int alpha_channel_of(const ImageSpec& spec) {
+    const int alpha = spec.alpha_channel;
+    if (alpha < 0 || alpha >= static_cast<int>(spec.channelnames.size())) return alpha;
+    return is_matte(spec.channelnames[static_cast<std::size_t>(alpha)], cryptomatte_layers(spec)) ? -1
+                                                                                                  : alpha;
+}
+
 SourceFacts facts_of(const ImageSpec& spec) {
     const Frame frame = frame_of(spec);
     SourceFacts facts{frame.width, frame.height, {}, {}, {}};
-    facts.has_alpha = spec.alpha_channel >= 0;
+    facts.has_alpha = alpha_channel_of(spec) >= 0;
     facts.channel_names = spec.channelnames;
     facts.data_channels = data_channels_of(spec);
     if (const SourceLevel level = frame.level(); !(level.extent == SourceLevel(level.size).extent))
@@ -254,7 +266,8 @@ SourceFacts facts_of(const ImageSpec& spec) {
 }
 
 SourceImage source_image(const ImageSpec& spec) {
-    return {facts_of(spec), spec.nchannels, spec.get_string_attribute("oiio:ColorSpace"), spec.alpha_channel};
+    return {facts_of(spec), spec.nchannels, spec.get_string_attribute("oiio:ColorSpace"),
+            alpha_channel_of(spec)};
 }
 
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix) {

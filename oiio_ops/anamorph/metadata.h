@@ -29,6 +29,9 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
 OIIO::ImageSpec picture_spec(const OIIO::ImageSpec* source, const PictureRequest& picture,
                              bool stored = false, bool keeps_types = false);
 
+/// The channel of alpha; -1 where there is none, also where a name misleads: the last of a layer of Cryptomatte holds no alpha.
+int alpha_channel_of(const OIIO::ImageSpec& spec);
+
 /// Are a picture's pixels those of one of its sources as they are stored, since they are only moved and the core has no
 /// numbers for them? `space`: the color space to filter in, if any.
 bool moves_stored(const PictureRequest& picture, const std::vector<OIIO::ImageSpec>& sources,

@@ -136,7 +136,7 @@ class LensOracle {
     explicit LensOracle(const View& v) : m_kind(v.lens.kind), m_values(v.lens.values) {
         using enum LensModel::Kind;
         const std::size_t n = m_values.size();
-        m_unit = m_kind == ptlens    ? std::min(v.width, v.height) / Real(2)
+        m_unit = m_kind == ptlens   ? std::min(v.width, v.height) / Real(2)
                  : is_of_observed() ? std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / 2
                                     : scale(v).x;
         m_cx = Real(v.width) / 2 + m_values[n - 2];

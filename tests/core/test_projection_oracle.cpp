@@ -117,7 +117,8 @@ class Oracle {
             }
             case Projection::dual_fisheye_tb: {
                 const bool front = y < m_width;
-                const Real px = (x / m_width - 0.5L) * 2 * m_half, py = (y / m_width - !front - 0.5L) * 2 * m_half;
+                const Real px = (x / m_width - 0.5L) * 2 * m_half,
+                           py = (y / m_width - !front - 0.5L) * 2 * m_half;
                 const Real r = std::hypot(px, py);
                 if (r > std::min(m_half, kPi)) return kNoRay;
                 const Vector v = of_polar(r, std::atan2(py, px));
@@ -157,7 +158,8 @@ class Oracle {
                 const Vector w = front ? v : Vector{-v.x, v.y, -v.z};
                 if (polar_of(w) > m_half) return kNoPoint;
                 const Plane p = turned(polar_of(w), w);
-                return {(0.5L + p.x / (2 * m_half)) * m_width, (!front + 0.5L + p.y / (2 * m_half)) * m_width};
+                return {(0.5L + p.x / (2 * m_half)) * m_width,
+                        (!front + 0.5L + p.y / (2 * m_half)) * m_width};
             }
             default:
                 break;

@@ -125,6 +125,28 @@ TEST_F(Channels, GoThroughChains) {
         for (const int c : {4, 6, 7, 8}) EXPECT_EQ(of(seen, x, 5, c), value_at(x + 2, 5, c)) << x;
 }
 
+// OpenImageIO takes the last channel of a layer for alpha where a file has no other.
+TEST_F(Channels, CryptomatteHasNoAlpha) {
+    OIIO::ImageSpec spec(kWidth, kHeight, 7, OIIO::TypeFloat);
+    spec.channelnames = {
+        "R", "G", "B", "uCrypto00.red", "uCrypto00.green", "uCrypto00.blue", "uCrypto00.alpha"};
+    spec.attribute("cryptomatte/89abcde/name", "uCrypto");
+    OIIO::ImageBuf image(spec);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            float pixel[7];
+            for (int c = 0; c < 7; ++c) pixel[c] = 0.1f * static_cast<float>((x * (c + 2) + y) % 9);
+            image.setpixel(x, y, pixel);
+        }
+    write_image(image, "crypto.exr");
+    const std::string moved = "crypto.exr.map?u=x+0.25&v=y&filter=bilinear";
+    const std::vector<float> seen = read_floats(moved), alpha = read_floats(moved + "&alpha=1");
+    const std::vector<float> stored = read_floats("crypto.exr");
+    ASSERT_EQ(alpha.size() / 8, seen.size() / 7);
+    for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(kWidth); ++i)
+        for (std::size_t c = 3; c < 7; ++c) EXPECT_EQ(seen[7 * i + c], stored[7 * i + c]) << i << " " << c;
+}
+
 TEST_F(Channels, AreNamedWhereTheyAreNotKnown) {
     EXPECT_THAT(open_error(kHalfway + "&data_channels=Q"),
                 HasSubstr("must be none, or some of the source's channels, R, G, B, A, Z, grid, objectId"));

@@ -265,6 +265,8 @@ TEST_F(DrapeFiles, TheFarSideIsRefusedWhereItDoesNotFit) {
     EXPECT_THAT(open_error("page.exr.drape?back=nothing.exr"), HasSubstr("nothing.exr"));
     EXPECT_THAT(open_error("page.exr.drape?back=page.exr&scheme=hardware"),
                 HasSubstr("must not be given with scheme=hardware"));
+    EXPECT_THAT(open_error("page.exr.drape?back=page.exr&filter=summed_area"),
+                HasSubstr("must not be given with filter=summed_area"));
     // In memory it is a file as well.
     const ImageBuf page("page.exr");
     ImageBuf from_memory;

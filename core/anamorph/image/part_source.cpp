@@ -23,7 +23,7 @@ PartSource::PartSource(const Source& base, const Box& part) : m_base(base) {
     for (int level = 0; level < base.levels(); ++level) {
         const Size whole = base.size(level);
         const std::optional<LevelRun> across = run_on_level(part.x0, part.x1, finest.width, whole.width),
-                                 down = run_on_level(part.y0, part.y1, finest.height, whole.height);
+                                      down = run_on_level(part.y0, part.y1, finest.height, whole.height);
         if (!across || !down) return;
         Level made{across->first, down->first, {across->count, down->count}, {}};
         if (const ConstImageView* view = base.view(level)) {

@@ -23,7 +23,7 @@ namespace anamorph {
 /// the source point used from the exact one; its proven bound; the source point with v up. Distances in source
 /// pixels, of several layers the largest. u and v are in 0..1 on the source: across the seam of one that closes they start anew. Points
 /// beyond the edges of any other have values beyond; what is read there is the border's affair. coverage: how much of what the
-/// filter takes for a pixel is the source's own, 0 to 1, whatever the border says, of several layers by their weights.
+/// filter takes for a pixel is the source's own, 0 to 1, whatever a border shows beyond, of several layers by their weights.
 enum class Output { color, stmap, error, bound, stmap_up, coverage };
 
 /// Is the source point drawn?
