@@ -507,7 +507,8 @@ TEST(Drape, AConstantPictureStaysConstant) {
             DrapeOptions options;
             options.filter = filter;
             Shown shown(scene, options);
-            const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.seen();
+            const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.seen(),
+                                     shares = shown.coverage();
             const int width = scene.screen.width, height = scene.screen.height;
             int slits = 0;
             for (int y = 0; y < height; ++y)
@@ -518,7 +519,10 @@ TEST(Drape, AConstantPictureStaysConstant) {
                     };
                     const float value = drawn[static_cast<std::size_t>(y * width + x)];
                     // Edge pixels of an antialiased picture are covered in part, and so are those that see a slit
-                    // between two sheets. Of the outermost ones the edge may lie beyond the screen.
+                    // between two sheets. Of the outermost ones the edge may lie beyond the screen; each shows as much as
+                    // its share.
+                    const float share = shares[static_cast<std::size_t>(y * width + x)];
+                    EXPECT_NEAR(value, 0.75f * share, 1e-5f) << scene.surface << " " << x << " " << y;
                     const bool outermost = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
                     const bool edge = outermost || at(x - 1, y) != at(x, y) || at(x + 1, y) != at(x, y) ||
                                       at(x, y - 1) != at(x, y) || at(x, y + 1) != at(x, y);

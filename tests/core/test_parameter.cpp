@@ -107,7 +107,7 @@ TEST(Parameter, ErrorsNameParameterValueAndWhatIsAllowed) {
         const std::string error = error_of([&] { values({{key, value}}); });
         EXPECT_THAT(error, AllOf(HasSubstr(key), HasSubstr(printable(value)), HasSubstr(allowed)));
         EXPECT_THAT(error, Not(HasSubstr("\n")));
-        EXPECT_LT(error.size(), 600u);
+        EXPECT_LT(error.size(), 400u);
     };
     for (const char* bad :
          {"", "abc", "nan", "inf", "-inf", "1e400", "1,5", "0x10", "1 2", "--1", "+-1", "1.5.2"})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that hold no colour, and channels of several types: ids and depth are moved, never mixed, unless that is asked for.
 #include <cmath>
+#include <cstring>
 
 #include "host.h"
 
@@ -145,6 +146,26 @@ TEST_F(Channels, CryptomatteHasNoAlpha) {
     ASSERT_EQ(alpha.size() / 8, seen.size() / 7);
     for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(kWidth); ++i)
         for (std::size_t c = 3; c < 7; ++c) EXPECT_EQ(seen[7 * i + c], stored[7 * i + c]) << i << " " << c;
+}
+
+// A picture of nothing but ids is only moved: all its bits stay.
+TEST_F(Channels, OfIdsAloneKeepTheirBits) {
+    OIIO::ImageSpec spec(kWidth, kHeight, 1, OIIO::TypeUInt32);
+    spec.channelnames = {"id"};
+    std::vector<unsigned> ids;
+    for (unsigned i = 0; i < static_cast<unsigned>(kWidth * kHeight); ++i)
+        ids.push_back(i % 3 == 0 ? i : 4000000001u + i);
+    const auto output = OIIO::ImageOutput::create("ids.exr");
+    ASSERT_TRUE(output && output->open("ids.exr", spec) &&
+                output->write_image(OIIO::TypeUInt32, ids.data()) && output->close());
+    for (const std::string recipe : {"ids.exr.map?u=x&v=y", "ids.exr.lens?lens=3de4:k1=0"}) {
+        const Pixels seen = read_pixels(recipe);
+        EXPECT_EQ(seen.spec.format, OIIO::TypeUInt32);
+        std::vector<unsigned> found(seen.bytes.size() / sizeof(unsigned));
+        std::memcpy(found.data(), seen.bytes.data(), seen.bytes.size());
+        EXPECT_EQ(found, ids) << recipe;
+    }
+    EXPECT_EQ(read_pixels("ids.exr.map?u=x&v=y&data_channels=none").spec.format, OIIO::TypeFloat);
 }
 
 TEST_F(Channels, AreNamedWhereTheyAreNotKnown) {

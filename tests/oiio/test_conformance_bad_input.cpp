@@ -29,7 +29,7 @@ void expect_refused(const std::string& arguments, const std::string& parameter,
     SCOPED_TRACE(arguments);
     const std::string error = open_error("city.exr.pano?" + arguments);
     EXPECT_THAT(error, AllOf(HasSubstr(parameter), HasSubstr(allowed), Not(HasSubstr("\n"))));
-    EXPECT_LT(error.size(), 700u);
+    EXPECT_LT(error.size(), 500u);
 }
 
 /// Opens and reads what opens; the values are such that either is right.

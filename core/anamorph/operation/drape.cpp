@@ -247,8 +247,6 @@ LinkedFiles linked_back(const ParameterValues&, const SideFiles& files, const Si
 void check_back(const OperationInput& input) {
     const auto back = input.files.find("back");
     if (back == input.files.end()) return;
-    if (chosen<Filter>(input.values, "filter") == Filter::summed_area)
-        throw Error("back", printable(back->second.name), "must not be given with filter=summed_area");
     const SourceImage& front = input.sources[0];
     const std::unique_ptr<SideImage> image = input.reader.image("back", back->second.name);
     const Box shown = image->display();

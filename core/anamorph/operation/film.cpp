@@ -70,11 +70,12 @@ class FilmPictures final : public Pictures {
         if (m_sequence.is_film()) request->says.push_back({"anamorph:frame", time});
         if (m_shutter.samples == 1) return request;
         request->moves = {};
-        std::vector<PictureRequest> moments;
-        for (const double moment : m_shutter.moments(time)) moments.push_back(*at(moment, level));
-        request->solve = [moments = std::move(moments)] {
+        // Shared, as requests are copied.
+        const auto moments = std::make_shared<std::vector<PictureRequest>>();
+        for (const double moment : m_shutter.moments(time)) moments->push_back(*at(moment, level));
+        request->solve = [moments] {
             std::vector<Picture> pictures;
-            for (const PictureRequest& moment : moments) pictures.push_back(*moment.solve()->of_maps());
+            for (const PictureRequest& moment : *moments) pictures.push_back(*moment.solve()->of_maps());
             return solved(mean_of(std::move(pictures)));
         };
         return request;

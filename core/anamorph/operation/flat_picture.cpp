@@ -76,7 +76,7 @@ FlatRequest flat_request(const ParameterValues& values, const SourceFacts& sourc
     r.plan.cull = ends_at_edges(r.wrap, r.output) && !source.overscan;
     r.adds_alpha =
         rows::adds_alpha(values, source.has_alpha, r.wrap == Wrap::automatic || r.wrap == Wrap::black);
-    r.data = rows::data_of(values, source);
+    r.data = rows::data_of(values, source, r.filter);
     rows::check_overscan(values);
     r.plan.overscan = rows::overscan_of(values, target);
     return r;

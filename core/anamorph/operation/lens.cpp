@@ -63,7 +63,7 @@ ParameterTable make_lens_table() {
 struct Observed {
     Chart chart;
     bool has_fov = false;  ///< is its field of view known?
-    std::shared_ptr<const Attributes> says = {};
+    Attributes says = {};
 };
 
 LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
@@ -81,7 +81,7 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     const bool fisheye = model.kind == LensModel::Kind::kb4;
     const bool by_focal_length = fisheye || model.kind == LensModel::Kind::brown;
     const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
-    const auto with = [&](double fov, std::shared_ptr<const Attributes> says = {}) {
+    const auto with = [&](double fov, Attributes says = {}) {
         return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model),
                         by_focal_length, std::move(says)};
     };
@@ -91,8 +91,10 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     if (facts.fov && facts.projection == projection) return with(*facts.fov);
     if (!fisheye && facts.focal_length) {
         const double fov = flat_field_of_view(size.width, *facts.focal_length);
-        return with(fov, saying({"anamorph:fov", rounded_degrees(fov) + " degrees as " +
-                                                     facts.focal_length_said_by + " says"}));
+        Attributes says;
+        says.push_back(
+            {"anamorph:fov", rounded_degrees(fov) + " degrees as " + facts.focal_length_said_by + " says"});
+        return with(fov, std::move(says));
     }
     throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
 }
@@ -112,9 +114,8 @@ Box in_middle_of(const Size& larger, const Size& size) {
 }
 
 /// What the picture says of itself: of which field of view it was taken, and, where that is known, what it shows.
-std::shared_ptr<const Attributes> said_of(const Observed& observed, LensMode mode, const Size& target) {
-    auto says = std::make_shared<Attributes>();
-    if (observed.says) *says = *observed.says;
+std::shared_ptr<const Attributes> said_of(Observed& observed, LensMode mode, const Size& target) {
+    auto says = std::make_shared<Attributes>(std::move(observed.says));
     const Chart& chart = observed.chart;
     if (!observed.has_fov) return says;
     const LensModel& model = chart.lens()->model();
@@ -135,7 +136,7 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
     const auto mode = chosen<LensMode>(values, "mode");
     const bool all = values.text("size") == kAll;
     const Size asked = all ? source : rows::size_of(values, source);
-    const Observed observed = observed_picture(values, facts, mode == LensMode::distort ? asked : source);
+    Observed observed = observed_picture(values, facts, mode == LensMode::distort ? asked : source);
     const Size target = all ? LensMap::covering(observed.chart, mode, size_around(facts)) : asked;
     if (target.width > kMaxSide || target.height > kMaxSide)
         throw Error("size", kAll,
@@ -147,9 +148,9 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
     FlatRequest request = flat_request(values, facts, target);
     request.says = said_of(observed, mode, target);
     if (!(target == asked)) request.display = in_middle_of(target, asked);
-    return flat_pictures(request, [request, observed, mode](const Size& pixels) {
+    return flat_pictures(request, [request, chart = observed.chart, mode](const Size& pixels) {
         return FlatMap{std::make_shared<LensPlan>(
-            LensMap(observed.chart, mode, request.target, pixels, request.source_size()), request.plan)};
+            LensMap(chart, mode, request.target, pixels, request.source_size()), request.plan)};
     });
 }
 

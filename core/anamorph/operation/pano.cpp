@@ -58,12 +58,12 @@ struct FaceWord {
     glm::dvec3 toward;
 };
 constexpr std::array<const char*, 6> kExrFaces = {"+x", "-x", "+y", "-y", "+z", "-z"};
-const std::array<FaceWord, 6> kFaceWords = {{{"right", {1, 0, 0}},
-                                             {"left", {-1, 0, 0}},
-                                             {"up", {0, -1, 0}},
-                                             {"down", {0, 1, 0}},
-                                             {"front", {0, 0, 1}},
-                                             {"back", {0, 0, -1}}}};
+constexpr std::array<FaceWord, 6> kFaceWords = {{{"right", {1, 0, 0}},
+                                                 {"left", {-1, 0, 0}},
+                                                 {"up", {0, -1, 0}},
+                                                 {"down", {0, 1, 0}},
+                                                 {"front", {0, 0, 1}},
+                                                 {"back", {0, 0, -1}}}};
 std::vector<std::string> face_names() {
     std::vector<std::string> names(kExrFaces.begin(), kExrFaces.end());
     for (const FaceWord& word : kFaceWords) names.emplace_back(word.name);
@@ -504,7 +504,7 @@ ReprojectOptions read_reproject_options(const ParameterValues& values, const Sou
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
     options.source_overscan = source.overscan.has_value();
-    if (values.knows("data_filter")) options.data = rows::data_of(values, source);
+    if (values.knows("data_filter")) options.data = rows::data_of(values, source, options.filter);
     options.adds_alpha = rows::adds_alpha(values, source.has_alpha,
                                           options.wrap == Wrap::automatic || options.wrap == Wrap::black);
     return options;

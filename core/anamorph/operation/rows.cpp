@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "anamorph/image/source.h"
@@ -257,12 +258,12 @@ Parameter data_filter() {
     return row;
 }
 
-DataChannels data_of(const ParameterValues& values, const SourceFacts& facts) {
-    DataChannels data{facts.data_channels, chosen<Filter>(values, "data_filter")};
-    if (!values.given("data_channels")) return data;
-    data.channels.clear();
-    const std::string& all = values.text("data_channels");
-    if (all == "none") return data;
+namespace {
+
+/// The channels that a list names.
+std::vector<int> named_channels(const std::string& all, const SourceFacts& facts) {
+    std::vector<int> channels;
+    if (all == "none") return channels;
     for (std::size_t at = 0; at <= all.size();) {
         const std::size_t end = std::min(all.find(',', at), all.size());
         const std::string name = all.substr(at, end - at);
@@ -274,9 +275,20 @@ DataChannels data_of(const ParameterValues& values, const SourceFacts& facts) {
                 "data_channels", printable(all),
                 "must be none, or some of the source's channels, " + printable(names) + ", with commas");
         }
-        data.channels.push_back(static_cast<int>(found - facts.channel_names.begin()));
+        channels.push_back(static_cast<int>(found - facts.channel_names.begin()));
         at = end + 1;
     }
+    return channels;
+}
+
+}  // namespace
+
+DataChannels data_of(const ParameterValues& values, const SourceFacts& facts, Filter& filter) {
+    DataChannels data{facts.data_channels, chosen<Filter>(values, "data_filter")};
+    if (values.given("data_channels")) data.channels = named_channels(values.text("data_channels"), facts);
+    const std::set<int> different(data.channels.begin(), data.channels.end());
+    // Then what is only moved keeps all its bits.
+    if (!different.empty() && different.size() == facts.channel_names.size()) filter = data.filter;
     return data;
 }
 

@@ -66,8 +66,8 @@ Parameter filter(const std::vector<Word>& own = {});
 /// The rows of channels that hold no colour: which these are, and how they are filtered.
 Parameter data_channels();
 Parameter data_filter();
-/// Which channels of a source these are, and how they are read. Throws Error.
-DataChannels data_of(const ParameterValues& values, const SourceFacts& facts);
+/// Which channels of a source these are, and how they are read. Where all are, `filter` becomes theirs. Throws Error.
+DataChannels data_of(const ParameterValues& values, const SourceFacts& facts, Filter& filter);
 /// The row `wrap`. `automatic`: what that is here, "is black".
 Parameter wrap(const std::string& automatic);
 /// The row of schemes. The words auto, exact, blocks, residual, direct and hardware mean the same everywhere

@@ -360,7 +360,7 @@ std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
     WarpRequest request = read_warp_request(input.values, input.sources[0].size());
     request.program = read_shader(input);
     MeshWarpOptions& options = request.options;
-    options.data = rows::data_of(input.values, input.sources[0].facts);
+    options.data = rows::data_of(input.values, input.sources[0].facts, options.filter);
     options.adds_alpha = rows::adds_alpha(input.values, input.sources[0].alpha >= 0,
                                           options.wrap == Wrap::automatic || options.wrap == Wrap::black);
     const std::shared_ptr<const WarpMap> map = read_map(request, input);

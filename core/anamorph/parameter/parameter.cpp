@@ -197,11 +197,22 @@ std::vector<std::string> names(const ParameterTable& table) {
     return out;
 }
 
+/// Names as far as a line holds them.
+std::string joined_in_a_line(const std::vector<std::string>& all) {
+    constexpr std::size_t kLine = 240;
+    std::vector<std::string> first;
+    std::size_t length = 0;
+    for (const std::string& name : all)
+        if ((length += name.size() + 2) < kLine) first.push_back(name);
+    const std::size_t others = all.size() - first.size();
+    return joined(first) + (others > 0 ? " and " + std::to_string(others) + " others" : "");
+}
+
 [[noreturn]] void throw_unknown(const Assignment& given, const ParameterTable& table) {
     const std::vector<std::string> all = names(table);
-    throw Error(
-        printable(given.key), printable(given.value),
-        "there is no such parameter" + meant(lower(given.key), all) + ": must be one of " + joined(all));
+    throw Error(printable(given.key), printable(given.value),
+                "there is no such parameter" + meant(lower(given.key), all) + ": must be one of " +
+                    joined_in_a_line(all));
 }
 
 /// "key=value" cut at its first equals sign.

@@ -505,18 +505,15 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
     if (!source) return m_picture.draw(source, box, view, parallel_for);
+    std::optional<MirroredSource> mirrored;
+    if (back) back = &mirrored.emplace(*back);
     // Sources that keep no sums are lent a place for them.
     std::deque<Pyramid> lent;
     if (m_options.filter == Filter::summed_area)
         for (const Source** s : {&source, &backdrop, &back})
             if (*s && !(*s)->summed_areas()) *s = &lent.emplace_back(**s);
     const int straight = source->unassociated_alpha();
-    std::optional<MirroredSource> mirrored;
-    if (back) mirrored.emplace(*back);
-    const Layers layers{*source,
-                        back ? &*mirrored : nullptr,
-                        backdrop,
-                        {straight >= 0 ? straight : m_options.alpha, straight < 0}};
+    const Layers layers{*source, back, backdrop, {straight >= 0 ? straight : m_options.alpha, straight < 0}};
     Picture picture = m_picture;
     std::atomic<bool> ok{true};
     if (m_options.lighting.shading != DrapeShading::none || layers.has_backdrop(m_options))
