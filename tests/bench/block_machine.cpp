@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/image/picture.h"
 #include "anamorph/machine/block_machine_map.h"
+#include "anamorph/machine/block_pixels.h"
 #include "anamorph/machine/block_schedule.h"
 #include "anamorph/surface/drape.h"
 #include "pixels.h"
@@ -32,10 +32,7 @@ class Waves {
         float* values = m_texels.as<float>();
         for (std::size_t i = 0; i < bytes() / sizeof(float); ++i)
             values[i] = static_cast<float>(i * 2654435761u % 65536) / 65536;
-        const auto& names = surface_names();
-        const auto which = std::find(names.begin(), names.end(), "waves") - names.begin();
-        m_surface =
-            std::make_shared<SharedTree>(make_surface(static_cast<std::size_t>(which), SurfaceShape{}));
+        m_surface = std::make_shared<SharedTree>(make_surface(waves_number(), SurfaceShape{}));
         m_pose.position = {0.3, 0.2, 1.3};
         m_options.tol = 0.125;
         m_options.filter = Filter::bilinear;
@@ -54,12 +51,11 @@ class Waves {
             m_size);
     }
     void draw(const BlockMachine& machine) {
-        Picture picture;
         const Chart flat(Projection::rectilinear, m_size.width, m_size.height);
-        picture.maps = {{map(machine), {{Border(flat, Wrap::clamp)}}}};
-        picture.filter = m_options.filter;
-        picture.draw(&source(), whole(), view(), serial_for);
+        BlockPixels(map(machine), machine, Border(flat, Wrap::clamp), m_options.filter)
+            .draw(&source(), whole(), view(), serial_for);
     }
+    static SurfaceCost cost() { return cost_of({.parts = {{waves_number()}}}); }
     /// How far what is shown is from where it belongs, of all pixels where something is.
     Accuracy accuracy(const BlockMachineMap& map) const {
         std::vector<float> errors;
@@ -84,6 +80,10 @@ class Waves {
     const Size& size() const { return m_size; }
 
   private:
+    static std::size_t waves_number() {
+        const auto& names = surface_names();
+        return static_cast<std::size_t>(std::find(names.begin(), names.end(), "waves") - names.begin());
+    }
     std::size_t bytes() const {
         return 3 * sizeof(float) * static_cast<std::size_t>(m_size.width) *
                static_cast<std::size_t>(m_size.height);
@@ -134,10 +134,11 @@ void measure_blocks(const Settings& settings, Report& report, int side) {
         Row row = row_of("oka-1987-" + std::to_string(block), side);
         if (!settings.wants_scheme(row.scheme)) continue;
         const auto map = waves.map(machine);
-        const MachineSchedule schedule = schedule_of(machine, map->frame().counts, waves.size());
+        const MachineSchedule schedule =
+            schedule_of(machine, map->frame().counts, waves.cost(), waves.size(), waves.size());
         row.error = waves.accuracy(*map);
         row.cycles = schedule.bottleneck().cycles;
-        row.frames_per_second = 1000 / schedule.frame_ms();
+        row.frames_per_second = 1000 / schedule.shown_ms();
         timed.push_back({[&waves, machine] { waves.draw(machine); }, 1});
         rows.push_back(row);
     }

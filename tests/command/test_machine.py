@@ -90,30 +90,63 @@ class Machine(unittest.TestCase):
             self.assertEqual(list(rows[0]), ["stage", "cycles", "ms", "utilisation", "starved_ms", "blocked_ms",
                                              "bytes_read", "bytes_written", "buffer_bytes"])
             table = {row.pop("stage"): {name: float(cell) for name, cell in row.items()} for row in rows}
-            frame = max(row["ms"] for row in table.values())
+            # What is drawn is shown at ticks of 33 ms, what lies before it needs none.
+            shown = max(table[stage]["ms"] for stage in ("address controller", "pixel processor", "output"))
+            frame = max([33 * math.ceil(shown / 33)] + [row["ms"] for row in table.values()])
             for row in table.values():
                 self.assertLessEqual(row["utilisation"], 1)
                 self.assertAlmostEqual(row["ms"] + row["starved_ms"] + row["blocked_ms"], frame)
             self.assertEqual(table["address controller"]["bytes_read"], table["micro-coded processors"]["bytes_written"])
             return table
         table = schedule()
-        self.assertEqual(table["micro-coded processors"]["cycles"], 2048 * 73)
-        self.assertEqual(table["pixel processor"],
-                         {"cycles": 512 * 512, "ms": 26.2144, "utilisation": 1, "starved_ms": 0, "blocked_ms": 0,
-                          "bytes_read": 512 * 512 * 12, "bytes_written": 512 * 512 * 3, "buffer_bytes": 512 * 512 * 6})
+        self.assertEqual(table["micro-coded processors"]["cycles"], 2048 * (1 + 21 + 32) + 2 * 4096 + 256)
+        drawing = table["pixel processor"]
+        self.assertAlmostEqual(drawing["blocked_ms"], 33 - 26.2144)
+        self.assertEqual([drawing[key] for key in ("cycles", "ms", "starved_ms", "bytes_read", "bytes_written", "buffer_bytes")],
+                         [512 * 512, 26.2144, 0, 512 * 512 * 12, 512 * 512 * 3, 512 * 512 * 6])
         small = schedule("--machine", "oka-1987:block=4")
         self.assertEqual(small["micro-coded processors"]["utilisation"], 1)
-        self.assertGreater(small["pixel processor"]["starved_ms"], 30)
+        self.assertGreater(small["pixel processor"]["starved_ms"], 20)
         large = schedule("--picture", "1024", "--size", "1024")
-        self.assertEqual(large["pixel processor"]["utilisation"], 1)
         self.assertGreater(large["pixel processor"]["ms"], 100)
+        self.assertAlmostEqual(large["output"]["ms"] + large["output"]["starved_ms"], 132)
+
+    def test_frames_are_shown_at_ticks(self):
+        status, out, error = run("schedule", "--frames", "--picture", "1024", "--size", "1024")
+        self.assertEqual((status, error), (0, ""))
+        rows = list(csv.DictReader(out.decode().splitlines()))
+        self.assertEqual(list(rows[0]), ["frame", "drawn_ms", "shown_ms", "ticks_late"])
+        for before, row in zip(rows, rows[1:]):
+            shown = float(row["shown_ms"])
+            self.assertAlmostEqual(shown / 33, round(shown / 33))
+            self.assertLessEqual(0, shown - float(row["drawn_ms"]))
+            self.assertEqual(int(row["ticks_late"]), round((shown - float(before["shown_ms"])) / 33) - 1)
+        self.assertEqual(rows[-1]["ticks_late"], "3")
+
+    def test_bumps_cost_products(self):
+        def processors(*more):
+            status, out, error = run("schedule", "--picture", "8", "--size", "8", "--machine",
+                                     "oka-1987:buckets=1,sort_cycles=0,processors=1", *more)
+            self.assertEqual((status, error), (0, ""))
+            rows = {row["stage"]: row for row in csv.DictReader(out.decode().splitlines())}
+            return float(rows["micro-coded processors"]["cycles"]), float(rows["host computer"]["bytes_written"])
+        with tempfile.TemporaryDirectory() as folder:
+            bumps = os.path.join(folder, "bumps.csv")
+            with open(bumps, "w") as file:
+                file.write("0.5,0.5,0.1,0.1,0,0,0.001\n" * 50)
+            plain, bumpy = processors(), processors("--deformations", bumps)
+            # Seven products, an exponential of four, and seven numbers of four bytes, for each of fifty.
+            self.assertEqual(bumpy[0] - plain[0], 50 * (7 + 4))
+            self.assertEqual(bumpy[1] - plain[1], 50 * 7 * 4)
+            self.assertIn("bumps.none: cannot be read", run("schedule", "--deformations", "bumps.none")[2])
 
     def test_cycles_are_those_that_the_reference_says(self):
         """The formulas of the page's table, with the numbers of its defaults."""
-        for keys, picture in [({}, 512), ({"block": 4}, 512), ({"processors": 3, "multipliers": 4}, 300),
+        for keys, picture in [({}, 512), ({"block": 4}, 512), ({"processors": 3, "multipliers": 4, "buckets": 9, "sort_cycles": 3}, 300),
                               ({"surface_multiplies": 7, "division_cycles": 5, "pixel_units": 3, "block": 16}, 200),
                               ({"host_cycles": 123, "block_cycles": 11, "segment_cycles": 5, "segment": 16}, 256)]:
-            value = dict({"processors": 2, "multipliers": 1, "surface_multiplies": 20, "division_cycles": 16,
+            value = dict({"processors": 2, "multipliers": 1, "surface_multiplies": 1, "division_cycles": 16,
+                          "buckets": 256, "sort_cycles": 2,
                           "host_cycles": 20000, "block_cycles": 8, "segment_cycles": 4, "pixel_units": 1}, **keys)
             machine = ",".join("%s=%s" % item for item in keys.items())
             status, out, error = run("schedule", "--picture", str(picture), "--machine", "oka-1987" + (machine and ":") + machine)
@@ -124,17 +157,21 @@ class Machine(unittest.TestCase):
             pixels = stages["pixel processor"]["bytes_written"] / 3
             cycles = math.ceil((value["surface_multiplies"] + 21) / value["multipliers"]) + 2 * value["division_cycles"]
             if not keys:
-                self.assertEqual((cycles, blocks), (73, (picture / 8) ** 2))
-            self.assertEqual(stages["micro-coded processors"]["cycles"], math.ceil(blocks / value["processors"]) * cycles)
+                self.assertEqual((cycles, blocks), (54, (picture / 8) ** 2))
+            self.assertEqual(stages["micro-coded processors"]["cycles"],
+                             math.ceil(blocks / value["processors"]) * cycles + blocks * value["sort_cycles"] + value["buckets"])
             self.assertEqual(stages["host computer"]["cycles"], value["host_cycles"])
-            self.assertEqual(stages["pixel processor"]["cycles"], math.ceil(pixels / value["pixel_units"]))
             self.assertEqual(stages["output"]["cycles"], 512 * 512)
             segments = (stages["address controller"]["cycles"] - blocks * value["block_cycles"]) / value["segment_cycles"]
             self.assertEqual(segments, int(segments))
+            # The units share the pixels of a block in a segment; what is left of the last cycle is lost.
+            drawing = stages["pixel processor"]["cycles"]
+            self.assertGreaterEqual(drawing, pixels / value["pixel_units"])
+            self.assertLessEqual(drawing, pixels / value["pixel_units"] + segments * (1 - 1 / value["pixel_units"]))
             self.assertGreaterEqual(segments, blocks)
         with open(PAGE) as file:
             text = file.read()
-        for formula in ("(`surface_multiplies` + 21) / `multipliers` + 2 `division_cycles`", "20 + 21 + 2 x 16 = 73",
+        for formula in ("(surface + 21) / `multipliers` + 2 `division_cycles`", "1 + 21 + 2 x 16 = 54",
                         "blocks times `block_cycles` + segments times `segment_cycles`", "pixels / `pixel_units`"):
             self.assertIn(formula, text)
 

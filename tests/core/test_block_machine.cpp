@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <random>
 
+#include "anamorph/machine/block_pixels.h"
 #include "anamorph/machine/machine_text.h"
+#include "anamorph/machine/surface_cost.h"
 #include "anamorph/operation/operation.h"
 #include "drape_oracle.h"
 
@@ -116,10 +121,20 @@ TEST(BlockMachine, AddressesThatDoNotFitSaturateAndAreCounted) {
     for (const double overlap : {0.0, 0.5, 4.0, 8.0}) {
         machine.overlap = overlap;
         const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), 256, 256);
-        // A block whose reference address saturates is wrong in all of its pixels, its share of the common area too.
-        const int right = 128 - (overlap >= 2 ? static_cast<int>(overlap / 2) : 0);
-        EXPECT_EQ(frame.counts.saturated, 256 * 256 - right * right) << overlap;
-        EXPECT_EQ(frame.addresses.back().x, 128 - 1.0 / 256);
+        // Of a block beyond, rectangle, address and all are the largest number, which lies in itself.
+        EXPECT_GT(frame.counts.saturated, 0);
+        for (int y = 0; y < 256; ++y)
+            for (int x = 0; x < 256; ++x) {
+                const std::size_t at = frame.index(x, y);
+                const bool within = x < 120 && y < 120;
+                if (within) {
+                    ASSERT_FALSE(frame.beyond[at]);
+                    ASSERT_NEAR(frame.addresses[at].x, x + 0.5, 1.0 / 256);
+                } else if (x >= 136 && frame.block[at] != BlockFrame::kNone) {
+                    ASSERT_TRUE(frame.beyond[at]);
+                    ASSERT_EQ(frame.addresses[at].x, 128 - 1.0 / 256);
+                }
+            }
     }
 }
 
@@ -139,6 +154,379 @@ TEST(BlockMachine, WhatIsNotSeenIsNotVisited) {
     CameraPose flat = parallel_pose();
     flat.position = {2, 0, 0};
     EXPECT_EQ(frame_of(BlockMachine{}, "plane", flat, 64, 64).counts.pixels, 0);
+}
+
+/// Fixed point in whole numbers of its unit.
+struct Fixed {
+    int bits, fraction;
+
+    std::int64_t limited(std::int64_t units) const {
+        const std::int64_t half = std::int64_t{1} << (bits - 1);
+        return std::clamp(units, -half, half - 1);
+    }
+    /// The nearest one, ties to even.
+    std::int64_t of(double value) const {
+        const double units = std::nearbyint(std::ldexp(value, fraction));
+        return limited(static_cast<std::int64_t>(std::clamp(units, -1e15, 1e15)));
+    }
+    double value(std::int64_t units) const { return std::ldexp(static_cast<double>(units), -fraction); }
+};
+
+/// The machine written out in float, as its processors compute, and whole numbers: block and address of each pixel.
+class Oracle {
+  public:
+    Oracle(const BlockMachine& machine, const std::string& surface, const CameraPose& pose, int n)
+        : m_machine(machine), m_fixed{machine.address_bits, machine.fraction_bits}, m_n(n) {
+        const int d = static_cast<int>(machine.block), count = n / d;
+        const auto seen = [&](int i, int j) {
+            const test::OracleSight at = test::oracle_sight(
+                pose, {n, n},
+                test::oracle_surface(surface, SurfaceShape{}, (i + 0.5L) * d / n, (j + 0.5L) * d / n));
+            return std::array<float, 3>{float(double(at.x)), float(double(at.y)), float(double(at.ahead))};
+        };
+        for (int j = 0; j < count; ++j)
+            for (int i = 0; i < count; ++i) {
+                const auto c = seen(i, j), l = seen(i - 1, j), r = seen(i + 1, j), a = seen(i, j - 1),
+                           b = seen(i, j + 1);
+                const float sides = 2.0f * static_cast<float>(d);
+                Block block;
+                block.centre = c;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    block.by_u[k] = (r[k] - l[k]) / sides;
+                    block.by_v[k] = (b[k] - a[k]) / sides;
+                }
+                const float one = 1.0f / (block.by_u[0] * block.by_v[1] - block.by_v[0] * block.by_u[1]);
+                block.inverse = {one * block.by_v[1], -one * block.by_v[0], -one * block.by_u[1],
+                                 one * block.by_u[0]};
+                const double half = machine.overlap / 2;
+                block.u = (i + 0.5) * d;
+                block.v = (j + 0.5) * d;
+                block.low = {std::max(0.0, i * d - half), std::max(0.0, j * d - half)};
+                block.high = {std::min(double(n), (i + 1) * d + half),
+                              std::min(double(n), (j + 1) * d + half)};
+                m_blocks.push_back(block);
+            }
+    }
+
+    /// Compares all pixels.
+    void expect(const BlockFrame& frame) const {
+        std::vector<int> block(frame.block.size(), -1);
+        std::vector<std::array<std::int64_t, 2>> address(frame.block.size());
+        for (const std::size_t k : order()) draw(static_cast<int>(k), block, address);
+        for (std::size_t at = 0; at < block.size(); ++at) {
+            ASSERT_EQ(frame.block[at], block[at]) << at % std::size_t(m_n) << " " << at / std::size_t(m_n);
+            if (block[at] < 0) continue;
+            ASSERT_EQ(frame.addresses[at].x, m_fixed.value(address[at][0])) << at;
+            ASSERT_EQ(frame.addresses[at].y, m_fixed.value(address[at][1])) << at;
+        }
+    }
+
+  private:
+    struct Block {
+        std::array<float, 3> centre, by_u, by_v;
+        std::array<float, 4> inverse;
+        double u, v;
+        std::array<double, 2> low, high;
+    };
+
+    /// From the farthest bucket to the nearest.
+    std::vector<std::size_t> order() const {
+        float near = HUGE_VALF, far = -HUGE_VALF;
+        for (const Block& b : m_blocks) {
+            near = std::min(near, b.centre[2]);
+            far = std::max(far, b.centre[2]);
+        }
+        std::multimap<int, std::size_t> buckets;
+        for (std::size_t k = 0; k < m_blocks.size(); ++k) {
+            const double part = (double(far) - m_blocks[k].centre[2]) / (double(far) - near);
+            buckets.emplace(std::min(static_cast<int>(part * m_machine.buckets), m_machine.buckets - 1), k);
+        }
+        std::vector<std::size_t> all;
+        for (const auto& [bucket, k] : buckets) all.push_back(k);
+        return all;
+    }
+
+    void draw(int number, std::vector<int>& block, std::vector<std::array<std::int64_t, 2>>& address) const {
+        const Block& b = m_blocks[static_cast<std::size_t>(number)];
+        const auto pixel = [&](float at) { return std::clamp(static_cast<int>(std::floor(at)), 0, m_n - 1); };
+        const int x0 = pixel(b.centre[0]), y0 = pixel(b.centre[1]);
+        const float dx = static_cast<float>(x0 + 0.5 - b.centre[0]),
+                    dy = static_cast<float>(y0 + 0.5 - b.centre[1]);
+        const float u = static_cast<float>(b.u), v = static_cast<float>(b.v);
+        const float at[2] = {u + (b.inverse[0] * dx + b.inverse[1] * dy),
+                             v + (b.inverse[2] * dx + b.inverse[3] * dy)};
+        const Box box = reached(b);
+        for (int y = box.y0; y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x) {
+                std::array<std::int64_t, 2> to{};
+                bool in = true;
+                for (std::size_t k = 0; k < 2; ++k) {
+                    to[k] = walked(at[k], b.inverse[2 * k], b.inverse[2 * k + 1], x, y, x0, y0);
+                    in = in && to[k] >= m_fixed.of(b.low[k]) && to[k] <= m_fixed.of(b.high[k]);
+                }
+                if (!in) continue;
+                block[static_cast<std::size_t>(y * m_n + x)] = number;
+                address[static_cast<std::size_t>(y * m_n + x)] = to;
+            }
+    }
+    /// The segments that the block's parallelogram reaches.
+    Box reached(const Block& b) const {
+        double first[2] = {HUGE_VAL, HUGE_VAL}, last[2] = {-HUGE_VAL, -HUGE_VAL};
+        for (const double u : {b.low[0], b.high[0]})
+            for (const double v : {b.low[1], b.high[1]})
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const double at = b.centre[k] + (u - b.u) * b.by_u[k] + (v - b.v) * b.by_v[k];
+                    first[k] = std::min(first[k], at);
+                    last[k] = std::max(last[k], at);
+                }
+        const int s = m_machine.segment;
+        int from[2], to[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            from[k] = static_cast<int>(std::ceil(std::clamp(first[k] - 0.5, 0.0, double(m_n))));
+            to[k] = static_cast<int>(std::floor(std::clamp(last[k] - 0.5, -1.0, m_n - 1.0)));
+            if (to[k] < from[k]) return {0, 0, 0, 0};
+            from[k] = from[k] / s * s;
+            to[k] = std::min((to[k] / s + 1) * s, m_n);
+        }
+        return {from[0], from[1], to[0], to[1]};
+    }
+    /// Step by step, as the paper's Fig. 2.5 has it.
+    std::int64_t walked(double at, double across, double down, int x, int y, int x0, int y0) const {
+        const Fixed& f = m_fixed;
+        std::int64_t sum = f.of(at);
+        if (m_machine.addresses == Addressing::direct)
+            return f.limited(f.limited(sum + f.of((x - x0) * across)) + f.of((y - y0) * down));
+        const int s = m_machine.addresses == Addressing::segments ? m_machine.segment : 1;
+        sum = f.limited(f.limited(sum - f.of(x0 % s * across)) - f.of(y0 % s * down));
+        for (int k = y0 / s; k < y / s; ++k) sum = f.limited(sum + f.of(s * down));
+        for (int k = y0 / s; k > y / s; --k) sum = f.limited(sum - f.of(s * down));
+        for (int k = x0 / s; k < x / s; ++k) sum = f.limited(sum + f.of(s * across));
+        for (int k = x0 / s; k > x / s; --k) sum = f.limited(sum - f.of(s * across));
+        return f.limited(f.limited(sum + f.of(x % s * across)) + f.of(y % s * down));
+    }
+
+    BlockMachine m_machine;
+    Fixed m_fixed;
+    int m_n;
+    std::vector<Block> m_blocks;
+};
+
+TEST(BlockMachine, IsTheMachineWrittenOutInWholeNumbers) {
+    constexpr unsigned kSeed = 1987;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    const auto any = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    for (int round = 0; round < 24; ++round) {
+        CameraPose pose;
+        pose.position = {any(-1, 1), any(-1, 1), any(2, 4)};
+        pose.perspective = round % 2 == 0;
+        BlockMachine machine;
+        machine.addresses =
+            std::array{Addressing::segments, Addressing::repeated, Addressing::direct}[round % 3];
+        machine.block = std::array{4, 8, 16}[round / 3 % 3];
+        machine.segment = std::array{4, 8, 5}[round / 2 % 3];
+        machine.overlap = std::array{0.0, 0.5, 2.0}[round % 3];
+        machine.buckets = std::array{1, 7, 256}[round / 4 % 3];
+        machine.fraction_bits = std::array{0, 2, 4, 8, 12}[round % 5];
+        machine.address_bits = machine.fraction_bits + std::array{9, 8, 12}[round / 5 % 3];
+        const std::string surface = std::array{"waves", "torus", "sphere", "page_turn"}[round % 4];
+        SCOPED_TRACE(testing::Message() << "round " << round << " " << surface);
+        Oracle(machine, surface, pose, 64).expect(frame_of(machine, surface, pose, 64, 64));
+        if (HasFatalFailure()) return;
+    }
+}
+
+/// Too few bits behind the point open cracks between blocks, and their common area closes them.
+TEST(BlockMachine, TooFewBitsOpenCracks) {
+    CameraPose pose;
+    pose.position = {0.3, 0.2, 1.4};
+    const auto cracks = [&](int fraction_bits, double overlap) {
+        BlockMachine machine;
+        machine.fraction_bits = fraction_bits;
+        machine.overlap = overlap;
+        const BlockFrame frame = frame_of(machine, "waves", pose, 256, 256);
+        std::int64_t empty = 0, full = 0;
+        BlockMachine fine = machine;
+        fine.address_bits = 36;
+        fine.fraction_bits = 24;
+        const BlockFrame all = frame_of(fine, "waves", pose, 256, 256);
+        for (std::size_t k = 0; k < frame.block.size(); ++k) {
+            empty += frame.block[k] == BlockFrame::kNone && all.block[k] != BlockFrame::kNone;
+            full += all.block[k] != BlockFrame::kNone;
+        }
+        EXPECT_NEAR(double(frame.counts.cracks), double(empty), 0.001 * double(full));
+        return frame.counts.cracks;
+    };
+    EXPECT_EQ(cracks(12, 0.5), 0);
+    EXPECT_GT(cracks(4, 0), cracks(8, 0));
+    EXPECT_GT(cracks(2, 0), cracks(4, 0));
+    EXPECT_GT(cracks(2, 0), 50);
+    // At its edges the picture has no neighbours.
+    EXPECT_LT(cracks(2, 2), cracks(2, 0) / 5);
+}
+
+/// One bucket is the order of the picture; the more there are the fewer pixels show what lies behind.
+TEST(BlockMachine, FewBucketsShowWhatLiesBehind) {
+    CameraPose pose;
+    pose.position = {1, 1.5, 2};
+    const auto wrong = [&](int buckets) {
+        BlockMachine machine;
+        machine.buckets = buckets;
+        return frame_of(machine, "torus", pose, 256, 256).counts.misordered;
+    };
+    EXPECT_GT(wrong(1), 1000);
+    EXPECT_LT(wrong(16), wrong(1));
+    EXPECT_LT(wrong(256), wrong(16));
+    EXPECT_EQ(wrong(1 << 20), 0);
+}
+
+/// With depths for each pixel the nearest of the blocks that meet there is seen, but for the z-buffer's unit.
+TEST(BlockMachine, DepthsOfPixelsHideWhatLiesBehind) {
+    constexpr int kScreen = 128, kFine = 800;
+    CameraPose pose;
+    pose.position = {1, 1.5, 2};
+    const auto sight = [&](double u, double v) {
+        return test::oracle_sight(pose, {kScreen, kScreen},
+                                  test::oracle_surface("torus", SurfaceShape{}, u, v));
+    };
+    // The nearest of many points of the surface that are seen at a pixel.
+    std::vector<double> nearest(kScreen * kScreen, HUGE_VAL);
+    for (int j = 0; j < kFine; ++j)
+        for (int i = 0; i < kFine; ++i) {
+            const test::OracleSight at = sight((i + 0.5) / kFine, (j + 0.5) / kFine);
+            if (!(at.x >= 0 && at.x < kScreen && at.y >= 0 && at.y < kScreen)) continue;
+            double& least =
+                nearest[static_cast<std::size_t>(at.y) * kScreen + static_cast<std::size_t>(at.x)];
+            least = std::min(least, double(at.ahead));
+        }
+    BlockMachine machine;
+    const auto behind = [&] {
+        const BlockFrame frame = frame_of(machine, "torus", pose, kScreen, kScreen);
+        int count = 0;
+        for (std::size_t k = 0; k < frame.block.size(); ++k) {
+            if (frame.block[k] == BlockFrame::kNone) continue;
+            const Point<double>& at = frame.addresses[k];
+            count += double(sight(at.x / kScreen, at.y / kScreen).ahead) > nearest[k] + 0.1;
+        }
+        return count;
+    };
+    machine.buckets = 2;
+    const int sorted = behind();
+    machine.hidden = Hiding::z_buffer;
+    const int fine = behind();
+    machine.depth_bits = 3;
+    const int coarse = behind();
+    EXPECT_LT(fine, sorted / 5) << sorted;
+    EXPECT_GT(coarse, fine);
+}
+
+/// The pixels of a picture of `channels` floats that the machine shows.
+std::vector<float> shown(const BlockMachine& machine, const std::vector<float>& picture, int n, int channels,
+                         Filter filter, const CameraPose& pose, const std::string& surface) {
+    const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), {n, n});
+    const auto map = std::make_shared<BlockMachineMap>(machine, surface_called(surface), camera, Size{n, n});
+    const Chart flat(Projection::rectilinear, n, n);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(picture.data()), PixelType::float32, n, n, channels));
+    std::vector<float> to(picture.size());
+    EXPECT_TRUE(
+        BlockPixels(map, machine, Border(flat, Wrap::clamp), filter)
+            .draw(&source, {0, 0, n, n},
+                  packed_view(reinterpret_cast<std::byte*>(to.data()), PixelType::float32, n, n, channels),
+                  serial_for));
+    return to;
+}
+
+/// The mean of a picture over a rectangle about a texel's centre, and 2.3's rule for its sides, summed texel by texel; weights
+/// and texels of few bits.
+TEST(BlockMachine, PixelsAreInterpolatedBetweenMeans) {
+    constexpr int kSide = 64, kChannels = 3;
+    constexpr unsigned kSeed = 23;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::vector<float> picture(kSide * kSide * kChannels);
+    for (float& value : picture) value = std::uniform_real_distribution<float>(0, 1)(random);
+    CameraPose pose;
+    pose.position = {0.5, 0.7, 3.5};
+    for (const Filter filter : {Filter::antialias, Filter::bilinear, Filter::nearest})
+        for (const int texel_bits : {0, 4}) {
+            BlockMachine machine;
+            machine.weight_bits = 3;
+            machine.texel_bits = texel_bits;
+            const BlockFrame frame = frame_of(machine, "waves", pose, kSide, kSide);
+            const std::vector<float> drawn = shown(machine, picture, kSide, kChannels, filter, pose, "waves");
+            const auto stored = [&](int i, int j, double width, double height, int c) {
+                double sum = 0, area = 0;
+                for (int y = j - 40; y <= j + 40; ++y)
+                    for (int x = i - 40; x <= i + 40; ++x) {
+                        const double across = std::min(x + 1.0, i + 0.5 + width / 2) -
+                                              std::max(double(x), i + 0.5 - width / 2),
+                                     down = std::min(y + 1.0, j + 0.5 + height / 2) -
+                                            std::max(double(y), j + 0.5 - height / 2);
+                        if (across <= 0 || down <= 0) continue;
+                        const int at = std::clamp(y, 0, kSide - 1) * kSide + std::clamp(x, 0, kSide - 1);
+                        sum += across * down * picture[static_cast<std::size_t>(at * kChannels + c)];
+                        area += across * down;
+                    }
+                if (texel_bits == 0) return sum / area;
+                return std::nearbyint(sum / area * 15) / 15;
+            };
+            double worst = 0;
+            int compared = 0;
+            for (std::size_t k = 0; k < frame.block.size(); k += 7) {
+                if (frame.block[k] == BlockFrame::kNone) {
+                    EXPECT_EQ(drawn[k * kChannels], 0);
+                    continue;
+                }
+                const Jacobian& b = frame.steps[static_cast<std::size_t>(frame.block[k])];
+                const bool means = filter == Filter::antialias;
+                const double width = means ? std::max(1.0, std::fabs(b.x_i) + std::fabs(b.x_j)) : 1,
+                             height = means ? std::max(1.0, std::fabs(b.y_i) + std::fabs(b.y_j)) : 1;
+                const Point<double> at = frame.addresses[k];
+                const int i = static_cast<int>(std::floor(at.x - 0.5)),
+                          j = static_cast<int>(std::floor(at.y - 0.5));
+                const double right = std::nearbyint((at.x - 0.5 - i) * 8) / 8,
+                             below = std::nearbyint((at.y - 0.5 - j) * 8) / 8;
+                for (int c = 0; c < kChannels; ++c) {
+                    double expected = stored(static_cast<int>(std::floor(at.x)),
+                                             static_cast<int>(std::floor(at.y)), 1, 1, c);
+                    if (filter != Filter::nearest)
+                        expected = (1 - below) * ((1 - right) * stored(i, j, width, height, c) +
+                                                  right * stored(i + 1, j, width, height, c)) +
+                                   below * ((1 - right) * stored(i, j + 1, width, height, c) +
+                                            right * stored(i + 1, j + 1, width, height, c));
+                    worst =
+                        std::max(worst, std::fabs(expected - double(drawn[k * kChannels + std::size_t(c)])));
+                }
+                ++compared;
+            }
+            EXPECT_GT(compared, 50);
+            EXPECT_LT(worst, 1e-6) << static_cast<int>(filter) << " " << texel_bits;
+        }
+}
+
+/// What a point takes, counted by hand in the formulas of the surfaces.
+TEST(BlockMachine, SurfacesTakeWhatTheirFormulasTake) {
+    const auto cost = [](const std::string& name, std::vector<Deformation> bumps = {}) {
+        const auto& names = surface_names();
+        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        return cost_of({.parts = {{at}}, .deformations = std::move(bumps)});
+    };
+    // u by the aspect.
+    EXPECT_EQ(cost("plane").point, (OperationCounts{1, 0, 0}));
+    // Two angles; four sines and cosines; the radius, x, y and z.
+    EXPECT_EQ(cost("sphere").point, (OperationCounts{6, 0, 4}));
+    // A Gaussian: two extents, two squares, an exponential, V. One of Wendland's: extents, squares, a root, and
+    // (1 - r)^4 (4 r + 1), with what stands for it at the centre.
+    Deformation bump;
+    EXPECT_EQ(cost("plane", std::vector(50, bump)).point, (OperationCounts{1 + 50 * 7, 0, 50}));
+    EXPECT_EQ(cost("plane", std::vector(50, bump)).numbers, cost("plane").numbers + 50 * 7);
+    bump.kernel = DeformationKernel::wendland_c2;
+    EXPECT_EQ(cost("plane", {bump}).point, (OperationCounts{1 + 2 + 2 + 5 + 3, 0, 1}));
+    bump.enabled = false;
+    EXPECT_EQ(cost("plane", {bump}), cost("plane"));
 }
 
 /// The attributes of a picture that the operation drape makes of a source of 128 x 128.
@@ -187,6 +575,8 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
     EXPECT_GT(reached_by_drape(
                   {{"machine", "oka-1987:address_bits=16,fraction_bits=9"}})["anamorph:saturated_pixels"],
               100);
+    EXPECT_EQ(standard["anamorph:cracks"], 0);
+    EXPECT_EQ(standard["anamorph:shown_ms"], 33);
     const auto message = [](const std::vector<Assignment>& more) -> std::string {
         try {
             reached_by_drape(more);
@@ -199,6 +589,12 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
     EXPECT_EQ(message({{"output", "depth"}}),
               "output=depth: must be color, stmap, error or bound with scheme=hardware");
     EXPECT_EQ(message({{"background", "1"}}), "background=1: must not be given with scheme=hardware");
+    EXPECT_EQ(message({{"filter", "bicubic"}}),
+              "filter=bicubic: must be antialias, bilinear or nearest with scheme=hardware");
+    EXPECT_EQ(message({{"machine", "oka-1987:addresses=jumps"}}),
+              "machine: addresses=\"jumps\": must be one of direct, repeated, segments");
+    EXPECT_EQ(message({{"machine", "oka-1987:frame_clock_ms=nan"}}),
+              "machine: frame_clock_ms=nan: must be a number from 0 to 1e+06");
     EXPECT_EQ(message({{"machine", "ps20"}}),
               "machine=ps20: must be oka-1987, oka-1987:key=value,key=value or an object of JSON, {...}");
     EXPECT_EQ(message({{"machine", "oka-1987:processors=0"}}),

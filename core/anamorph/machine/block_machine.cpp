@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <memory>
+#include <numeric>
 #include <string>
 
 #include "anamorph/error.h"
@@ -22,141 +25,332 @@ struct PixelRange {
           last(static_cast<int>(std::floor(std::clamp(high - 0.5, -1.0, count - 1.0)))) {}
 };
 
+/// Numbers of a processor: each result is rounded to its format.
+struct Rounding {
+    NumberFormat format;
+
+    double operator()(double value) const {
+        bool beyond = false;
+        return nearest(format, value, beyond);
+    }
+};
+/// Numbers that are taken for exact.
+struct NoRounding {
+    double operator()(double value) const { return value; }
+};
+
 /// A block on the screen: its parallelogram, and the linear map from pixels to texels (2.11).
 class BlockOnScreen {
   public:
-    BlockOnScreen(const surface::OkaBlock& block, const Size& picture, const Size& screen)
-        : m_x(block.centre.x + 0.5 * screen.width), m_y(block.centre.y + 0.5 * screen.height) {
-        // a: pixels of the screen by texels.
-        const double a11 = block.by_u.x / picture.width, a12 = block.by_v.x / picture.height,
-                     a21 = block.by_u.y / picture.width, a22 = block.by_v.y / picture.height;
-        const double r = 1 / (a11 * a22 - a12 * a21);
-        m_b[0] = r * a22;
-        m_b[1] = -r * a12;
-        m_b[2] = -r * a21;
-        m_b[3] = r * a11;
+    /// `coordinate` and `coefficient`: the numbers in which points and the inverse are computed.
+    template <class Number>
+    BlockOnScreen(const surface::OkaBlock& block, const Size& picture, const Size& screen, double side,
+                  const Number& coordinate, const Number& coefficient) {
+        const auto seen = [&](const glm::dvec3& at) {
+            return glm::dvec3(coordinate(at.x + 0.5 * screen.width), coordinate(at.y + 0.5 * screen.height),
+                              coordinate(at.z));
+        };
+        // What a point on the screen gains by a texel: central differences (2.4 to 2.7).
+        const auto gain = [&](const glm::dvec3& before, const glm::dvec3& after, int texels) {
+            const double across = coordinate(2 * std::min(side, double(texels)));
+            const glm::dvec3 from = seen(before), to = seen(after);
+            return glm::dvec3(coordinate(coordinate(to.x - from.x) / across),
+                              coordinate(coordinate(to.y - from.y) / across),
+                              coordinate(coordinate(to.z - from.z) / across));
+        };
+        m_centre = seen(block.centre);
+        m_by_u = gain(block.left, block.right, picture.width);
+        m_by_v = gain(block.above, block.below, picture.height);
+        // The inverse of the gains (2.11).
+        const double r =
+            coefficient(1 / coefficient(coefficient(m_by_u.x * m_by_v.y) - coefficient(m_by_v.x * m_by_u.y)));
+        m_b[0] = coefficient(r * m_by_v.y);
+        m_b[1] = coefficient(-r * m_by_v.x);
+        m_b[2] = coefficient(-r * m_by_u.y);
+        m_b[3] = coefficient(r * m_by_u.x);
         m_u = block.u * picture.width;
         m_v = block.v * picture.height;
         m_low = {block.u0 * picture.width, block.v0 * picture.height};
         m_high = {block.u1 * picture.width, block.v1 * picture.height};
         for (const double u : {m_low.x, m_high.x})
             for (const double v : {m_low.y, m_high.y}) {
-                const double x = m_x + a11 * (u - m_u) + a12 * (v - m_v),
-                             y = m_y + a21 * (u - m_u) + a22 * (v - m_v);
-                m_x0 = std::min(m_x0, x);
-                m_x1 = std::max(m_x1, x);
-                m_y0 = std::min(m_y0, y);
-                m_y1 = std::max(m_y1, y);
+                const glm::dvec3 at = point(u, v);
+                m_first = glm::min(m_first, at);
+                m_last = glm::max(m_last, at);
             }
     }
 
-    /// Has it an inverse?
+    /// Has it no inverse?
     bool is_flat() const {
-        return !std::isfinite(m_b[0] + m_b[1] + m_b[2] + m_b[3]) || !std::isfinite(m_x0 + m_x1 + m_y0 + m_y1);
+        return !std::isfinite(m_b[0] + m_b[1] + m_b[2] + m_b[3]) ||
+               !std::isfinite(m_first.x + m_first.y + m_last.x + m_last.y);
     }
-    PixelRange columns(const Size& screen) const { return {m_x0, m_x1, screen.width}; }
-    PixelRange rows(const Size& screen) const { return {m_y0, m_y1, screen.height}; }
+    PixelRange columns(const Size& screen) const { return {m_first.x, m_last.x, screen.width}; }
+    PixelRange rows(const Size& screen) const { return {m_first.y, m_last.y, screen.height}; }
+    double centre_depth() const { return m_centre.z; }
+    double least_depth() const { return m_first.z; }
+    double largest_depth() const { return m_last.z; }
 
-    /// Does it meet the rectangle from the first to the last pixel centre of a segment? Two convex shapes that are apart
-    /// are so along a side of one of them; the sides of the rectangle are looked at by whoever chooses segments.
-    bool meets(int x0, int y0, int x1, int y1) const {
-        double u[2] = {HUGE_VAL, -HUGE_VAL}, v[2] = {HUGE_VAL, -HUGE_VAL};
-        for (const int x : {x0, x1})
-            for (const int y : {y0, y1}) {
-                const Point<double> at = texel(x, y);
-                u[0] = std::min(u[0], at.x);
-                u[1] = std::max(u[1], at.x);
-                v[0] = std::min(v[0], at.y);
-                v[1] = std::max(v[1], at.y);
-            }
-        return u[1] >= m_low.x && u[0] <= m_high.x && v[1] >= m_low.y && v[0] <= m_high.y;
-    }
-    /// The exact inverse at a pixel's centre.
-    Point<double> texel(int x, int y) const {
-        const double dx = x + 0.5 - m_x, dy = y + 0.5 - m_y;
-        return {m_u + m_b[0] * dx + m_b[1] * dy, m_v + m_b[2] * dx + m_b[3] * dy};
+    /// The inverse at a pixel's centre.
+    template <class Number>
+    Point<double> texel(int x, int y, const Number& coordinate, const Number& coefficient) const {
+        const double dx = coordinate(x + 0.5 - m_centre.x), dy = coordinate(y + 0.5 - m_centre.y);
+        return {coefficient(m_u + coefficient(coefficient(m_b[0] * dx) + coefficient(m_b[1] * dy))),
+                coefficient(m_v + coefficient(coefficient(m_b[2] * dx) + coefficient(m_b[3] * dy)))};
     }
     bool holds(const Point<double>& at) const {
         return at.x >= m_low.x && at.x <= m_high.x && at.y >= m_low.y && at.y <= m_high.y;
     }
+    /// Where a texel is seen, and its depth (2.8).
+    glm::dvec3 point(double u, double v) const { return m_centre + (u - m_u) * m_by_u + (v - m_v) * m_by_v; }
     const double (&inverse() const)[4] { return m_b; }
-    /// The pixel nearest to the centre, from which addresses are counted.
-    int reference_x(const Size& screen) const { return nearest_pixel(m_x, screen.width); }
-    int reference_y(const Size& screen) const { return nearest_pixel(m_y, screen.height); }
+    const Point<double>& low() const { return m_low; }
+    const Point<double>& high() const { return m_high; }
+    /// The pixel next to the centre, from which addresses are counted.
+    int reference_x(const Size& screen) const { return nearest_pixel(m_centre.x, screen.width); }
+    int reference_y(const Size& screen) const { return nearest_pixel(m_centre.y, screen.height); }
 
   private:
     static int nearest_pixel(double at, int count) {
         return static_cast<int>(std::clamp(std::floor(at), 0.0, count - 1.0));
     }
 
-    double m_x, m_y, m_u, m_v, m_b[4];
+    glm::dvec3 m_centre, m_by_u, m_by_v, m_first{HUGE_VAL}, m_last{-HUGE_VAL};
+    double m_u, m_v, m_b[4];
     Point<double> m_low{}, m_high{};
-    double m_x0 = HUGE_VAL, m_x1 = -HUGE_VAL, m_y0 = HUGE_VAL, m_y1 = -HUGE_VAL;
 };
 
-/// The address controller and the pixel processor's addresses.
+/// One coordinate of the addresses of a block's pixels (2.12) in fixed point. Sums that are beyond the range saturate.
+class AddressSums {
+  public:
+    /// `x`, `y`: the pixel that addresses are counted from, which has the address `at`; `across` and `down`: what a pixel gains.
+    AddressSums(const BlockMachine& machine, const NumberFormat& format, int x, int y, double at,
+                double across, double down)
+        : m_way(machine.addresses), m_format(format), m_segment(machine.segment), m_x(x), m_y(y) {
+        m_at = fixed(at, m_beyond);
+        if (m_way == Addressing::direct) {
+            m_across = across;
+            m_down = down;
+            return;
+        }
+        m_across = fixed(across, m_beyond);
+        m_down = fixed(down, m_beyond);
+        if (m_way == Addressing::repeated) return;
+        // What pixels of a segment gain against its first one, and a segment against the one before.
+        for (int k = 0; k < m_segment; ++k) {
+            m_within_across.push_back(fixed(k * across, m_beyond));
+            m_within_down.push_back(fixed(k * down, m_beyond));
+        }
+        m_segment_across = fixed(m_segment * across, m_beyond);
+        m_segment_down = fixed(m_segment * down, m_beyond);
+        m_at = fixed(fixed(m_at - m_within_across[place_in(m_x)], m_beyond) - m_within_down[place_in(m_y)],
+                     m_beyond);
+    }
+
+    /// The address of a pixel. Sets `beyond` where it, or what it is made of, saturated.
+    double at(int x, int y, bool& beyond) const {
+        beyond = beyond || m_beyond;
+        switch (m_way) {
+            case Addressing::direct:
+                return fixed(fixed(m_at + fixed((x - m_x) * m_across, beyond), beyond) +
+                                 fixed((y - m_y) * m_down, beyond),
+                             beyond);
+            case Addressing::repeated:
+                return walk(m_at, y - m_y, m_down, x - m_x, m_across, beyond);
+            default:
+                break;
+        }
+        const double first = walk(m_at, y / m_segment - m_y / m_segment, m_segment_down,
+                                  x / m_segment - m_x / m_segment, m_segment_across, beyond);
+        return fixed(fixed(first + m_within_across[place_in(x)], beyond) + m_within_down[place_in(y)],
+                     beyond);
+    }
+
+  private:
+    double fixed(double value, bool& beyond) const { return nearest(m_format, value, beyond); }
+    std::size_t place_in(int pixel) const { return static_cast<std::size_t>(pixel % m_segment); }
+    /// Steps down and then steps across, one after the other. All are multiples of one unit: their sum is the product, and where
+    /// one of them saturates all that follow do.
+    double walk(double from, int rows, double down, int columns, double across, bool& beyond) const {
+        return fixed(fixed(from + rows * down, beyond) + columns * across, beyond);
+    }
+
+    Addressing m_way;
+    NumberFormat m_format;
+    int m_segment, m_x, m_y;
+    double m_at = 0, m_across = 0, m_down = 0, m_segment_across = 0, m_segment_down = 0;
+    std::vector<double> m_within_across, m_within_down;
+    bool m_beyond = false;
+};
+
+/// The addresses of a block, and the block's rectangle as they have it.
+class BlockAddresses {
+  public:
+    BlockAddresses(const BlockMachine& machine, const BlockOnScreen& block, const Size& screen)
+        : BlockAddresses(machine, block, block.reference_x(screen), block.reference_y(screen)) {}
+
+    Point<double> at(int x, int y, bool& beyond) const {
+        return {m_u.at(x, y, beyond), m_v.at(x, y, beyond)};
+    }
+    bool holds(const Point<double>& at) const {
+        return at.x >= m_low.x && at.x <= m_high.x && at.y >= m_low.y && at.y <= m_high.y;
+    }
+    /// May a pixel of a box lie in the rectangle? Addresses only rise or only fall along rows and columns.
+    bool meets(const Box& box) const {
+        Point<double> least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
+        for (const int x : {box.x0, box.x1 - 1})
+            for (const int y : {box.y0, box.y1 - 1}) {
+                bool beyond = false;
+                const Point<double> corner = at(x, y, beyond);
+                least = {std::min(least.x, corner.x), std::min(least.y, corner.y)};
+                most = {std::max(most.x, corner.x), std::max(most.y, corner.y)};
+            }
+        return most.x >= m_low.x && least.x <= m_high.x && most.y >= m_low.y && least.y <= m_high.y;
+    }
+
+  private:
+    BlockAddresses(const BlockMachine& machine, const BlockOnScreen& block, int x, int y)
+        : BlockAddresses(machine, {NumberFormat::Kind::fixed, machine.address_bits, machine.fraction_bits},
+                         block, x, y,
+                         block.texel(x, y, Rounding{machine.coordinates}, Rounding{machine.coefficients})) {}
+    BlockAddresses(const BlockMachine& machine, const NumberFormat& format, const BlockOnScreen& block, int x,
+                   int y, const Point<double>& reference)
+        : m_u(machine, format, x, y, reference.x, block.inverse()[0], block.inverse()[1]),
+          m_v(machine, format, x, y, reference.y, block.inverse()[2], block.inverse()[3]) {
+        const Rounding fixed{format};
+        m_low = {fixed(block.low().x), fixed(block.low().y)};
+        m_high = {fixed(block.high().x), fixed(block.high().y)};
+    }
+
+    AddressSums m_u, m_v;
+    Point<double> m_low{}, m_high{};
+};
+
+/// The depths of pixels as the z-buffer holds them: whole numbers from the least to the largest depth of all blocks.
+class DepthBuffer {
+  public:
+    DepthBuffer(const std::vector<BlockOnScreen>& blocks, int bits, std::size_t pixels)
+        : m_depths(pixels, std::uint64_t{1} << bits), m_largest(std::ldexp(1.0, bits) - 1) {
+        double far = -HUGE_VAL;
+        for (const BlockOnScreen& block : blocks) {
+            m_near = std::min(m_near, block.least_depth());
+            far = std::max(far, block.largest_depth());
+        }
+        m_scale = far > m_near ? m_largest / (far - m_near) : 0;
+    }
+    /// Is a depth at most the one that is held? It is held then.
+    bool take(std::size_t pixel, double depth) {
+        const auto whole = static_cast<std::uint64_t>(
+            std::clamp(std::nearbyint((depth - m_near) * m_scale), 0.0, m_largest));
+        if (whole > m_depths[pixel]) return false;
+        m_depths[pixel] = whole;
+        return true;
+    }
+
+  private:
+    std::vector<std::uint64_t> m_depths;
+    double m_near = HUGE_VAL, m_largest, m_scale;
+};
+
+/// The list that hidden surfaces are removed by: buckets from the farthest to the nearest, blocks of one bucket in the order in
+/// which they came.
+std::vector<std::size_t> far_to_near(const std::vector<BlockOnScreen>& blocks, int buckets) {
+    double near = HUGE_VAL, far = -HUGE_VAL;
+    for (const BlockOnScreen& block : blocks) {
+        near = std::min(near, block.centre_depth());
+        far = std::max(far, block.centre_depth());
+    }
+    std::vector<std::vector<std::size_t>> lists(static_cast<std::size_t>(buckets));
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        const double part = far > near ? (far - blocks[k].centre_depth()) / (far - near) : 0;
+        lists[static_cast<std::size_t>(std::min(std::floor(part * buckets), buckets - 1.0))].push_back(k);
+    }
+    std::vector<std::size_t> order;
+    for (const std::vector<std::size_t>& list : lists) order.insert(order.end(), list.begin(), list.end());
+    return order;
+}
+
+/// The address controller, and what the pixel processor shows.
 class Drawer {
   public:
-    Drawer(const BlockMachine& machine, const Size& picture, BlockFrame& frame)
-        : m_machine(machine),
-          m_picture(picture),
-          m_frame(frame),
-          m_format{NumberFormat::Kind::fixed, machine.address_bits, machine.fraction_bits} {}
+    Drawer(const BlockMachine& machine, const std::vector<BlockOnScreen>& blocks, BlockFrame& frame)
+        : m_machine(machine), m_blocks(blocks), m_frame(frame) {
+        const std::size_t pixels = frame.block.size();
+        if (machine.hidden == Hiding::z_buffer)
+            m_depths = std::make_unique<DepthBuffer>(blocks, machine.depth_bits, pixels);
+        else
+            m_nearest.assign(pixels, HUGE_VAL);
+    }
 
-    void draw(const surface::OkaBlock& block) {
-        const BlockOnScreen on_screen(block, m_picture, m_frame.screen);
-        if (on_screen.is_flat()) return;
-        const double(&b)[4] = on_screen.inverse();
-        m_frame.steps.push_back({b[0], b[2], b[1], b[3]});
-        set_addresses(on_screen);
-        const PixelRange columns = on_screen.columns(m_frame.screen), rows = on_screen.rows(m_frame.screen);
+    void draw() {
+        std::vector<std::size_t> order(m_blocks.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        if (m_machine.hidden == Hiding::sort) order = far_to_near(m_blocks, m_machine.buckets);
+        for (const std::size_t number : order) draw(number);
+        if (m_depths) return;
+        for (std::size_t k = 0; k < m_frame.block.size(); ++k)
+            if (m_frame.block[k] != BlockFrame::kNone &&
+                m_blocks[static_cast<std::size_t>(m_frame.block[k])].centre_depth() > m_nearest[k])
+                ++m_frame.counts.misordered;
+    }
+
+  private:
+    void draw(std::size_t number) {
+        const BlockOnScreen& block = m_blocks[number];
+        const BlockAddresses addresses(m_machine, block, m_frame.screen);
+        const PixelRange columns = block.columns(m_frame.screen), rows = block.rows(m_frame.screen);
         if (columns.last < columns.first || rows.last < rows.first) return;
         const int side = m_machine.segment;
         for (int y = rows.first / side * side; y <= rows.last; y += side)
             for (int x = columns.first / side * side; x <= columns.last; x += side) {
-                const int x1 = std::min(x + side, m_frame.screen.width) - 1,
-                          y1 = std::min(y + side, m_frame.screen.height) - 1;
-                if (!on_screen.meets(x, y, x1, y1)) continue;
-                ++m_frame.counts.segments;
-                draw_segment(on_screen, {x, y, x1 + 1, y1 + 1});
+                const Box segment{x, y, std::min(x + side, m_frame.screen.width),
+                                  std::min(y + side, m_frame.screen.height)};
+                if (addresses.meets(segment)) draw_segment(number, addresses, segment);
             }
     }
 
-  private:
-    /// Eq. 2.12 in fixed point: the address at the reference pixel, and what it gains by a step.
-    void set_addresses(const BlockOnScreen& block) {
-        m_x = block.reference_x(m_frame.screen);
-        m_y = block.reference_y(m_frame.screen);
-        const Point<double> at = block.texel(m_x, m_y);
-        m_beyond = false;
-        m_at = {nearest(m_format, at.x, m_beyond), nearest(m_format, at.y, m_beyond)};
-        for (std::size_t i = 0; i < 4; ++i) m_step[i] = nearest(m_format, block.inverse()[i], m_beyond);
+    void draw_segment(std::size_t number, const BlockAddresses& addresses, const Box& segment) {
+        std::int64_t drawn = 0;
+        for (int y = segment.y0; y < segment.y1; ++y)
+            for (int x = segment.x0; x < segment.x1; ++x) {
+                bool beyond = false;
+                const Point<double> at = addresses.at(x, y, beyond);
+                if (!addresses.holds(at)) continue;
+                ++drawn;
+                show(number, m_frame.index(x, y), at, beyond);
+            }
+        BlockCounts& counts = m_frame.counts;
+        ++counts.segments;
+        counts.addressed += std::int64_t{segment.width()} * segment.height();
+        counts.pixels += drawn;
+        const int at_once = m_machine.addresses == Addressing::segments ? m_machine.pixel_units : 1;
+        counts.pixel_cycles += (drawn + at_once - 1) / at_once;
     }
 
-    void draw_segment(const BlockOnScreen& block, const Box& box) {
-        for (int y = box.y0; y < box.y1; ++y)
-            for (int x = box.x0; x < box.x1; ++x) {
-                if (!block.holds(block.texel(x, y))) continue;
-                bool beyond = m_beyond;
-                const double dx = x - m_x, dy = y - m_y;
-                const std::size_t k = m_frame.index(x, y);
-                m_frame.addresses[k] = {nearest(m_format, m_at.x + dx * m_step[0] + dy * m_step[1], beyond),
-                                        nearest(m_format, m_at.y + dx * m_step[2] + dy * m_step[3], beyond)};
-                m_frame.block[k] = static_cast<std::int32_t>(m_frame.steps.size()) - 1;
-                m_frame.beyond[k] = beyond;
-                ++m_frame.counts.pixels;
-            }
+    void show(std::size_t number, std::size_t pixel, const Point<double>& at, bool beyond) {
+        const BlockOnScreen& block = m_blocks[number];
+        if (m_depths && !m_depths->take(pixel, block.point(at.x, at.y).z)) return;
+        if (!m_depths) m_nearest[pixel] = std::min(m_nearest[pixel], block.centre_depth());
+        m_frame.addresses[pixel] = at;
+        m_frame.block[pixel] = static_cast<std::int32_t>(number);
+        m_frame.beyond[pixel] = beyond;
     }
 
     const BlockMachine& m_machine;
-    Size m_picture;
+    const std::vector<BlockOnScreen>& m_blocks;
     BlockFrame& m_frame;
-    NumberFormat m_format;
-    int m_x = 0, m_y = 0;
-    Point<double> m_at{};
-    double m_step[4] = {};
-    bool m_beyond = false;
+    std::unique_ptr<DepthBuffer> m_depths;
+    std::vector<double> m_nearest;  ///< of the centres of the blocks that were drawn at a pixel
 };
+
+/// Marks the pixels that lie in a block.
+void mark(const BlockOnScreen& block, const BlockFrame& frame, std::vector<bool>& marks) {
+    if (block.is_flat()) return;
+    const PixelRange columns = block.columns(frame.screen), rows = block.rows(frame.screen);
+    for (int y = rows.first; y <= rows.last; ++y)
+        for (int x = columns.first; x <= columns.last; ++x)
+            if (block.holds(block.texel(x, y, NoRounding{}, NoRounding{}))) marks[frame.index(x, y)] = true;
+}
 
 }  // namespace
 
@@ -164,15 +358,6 @@ BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedS
                              const surface::Camera& camera, const Size& picture) {
     const surface::OkaBlocks cut{machine.block, machine.overlap, false};
     const Size count = surface::oka_block_count(picture, cut);
-    std::vector<surface::OkaBlock> blocks;
-    for (int j = 0; j < count.height; ++j)
-        for (int i = 0; i < count.width; ++i)
-            if (surface::OkaBlock block; surface::oka_block(surface, camera, picture, cut, i, j, block))
-                blocks.push_back(block);
-    // The list that hidden surfaces are removed by: from the farthest to the nearest.
-    std::stable_sort(
-        blocks.begin(), blocks.end(),
-        [](const surface::OkaBlock& a, const surface::OkaBlock& b) { return a.centre.z > b.centre.z; });
     BlockFrame frame;
     frame.screen = camera.screen();
     if (double(frame.screen.width) * frame.screen.height > kMostPixels)
@@ -184,10 +369,26 @@ BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedS
     frame.addresses.resize(pixels);
     frame.beyond.resize(pixels);
     frame.block.resize(pixels, BlockFrame::kNone);
-    frame.counts.blocks = static_cast<std::int64_t>(blocks.size());
-    Drawer drawer(machine, picture, frame);
-    for (const surface::OkaBlock& block : blocks) drawer.draw(block);
+    std::vector<bool> covered(pixels);
+    std::vector<BlockOnScreen> blocks;
+    const Rounding coordinate{machine.coordinates}, coefficient{machine.coefficients};
+    for (int j = 0; j < count.height; ++j)
+        for (int i = 0; i < count.width; ++i) {
+            surface::OkaBlock block;
+            if (!surface::oka_block(surface, camera, picture, cut, i, j, block)) continue;
+            ++frame.counts.blocks;
+            mark({block, picture, frame.screen, machine.block, NoRounding{}, NoRounding{}}, frame, covered);
+            const BlockOnScreen on_screen(block, picture, frame.screen, machine.block, coordinate,
+                                          coefficient);
+            if (on_screen.is_flat()) continue;
+            const double(&b)[4] = on_screen.inverse();
+            frame.steps.push_back({b[0], b[2], b[1], b[3]});
+            blocks.push_back(on_screen);
+        }
+    Drawer(machine, blocks, frame).draw();
     frame.counts.saturated = std::count(frame.beyond.begin(), frame.beyond.end(), true);
+    for (std::size_t k = 0; k < pixels; ++k)
+        if (covered[k] && frame.block[k] == BlockFrame::kNone) ++frame.counts.cracks;
     return frame;
 }
 

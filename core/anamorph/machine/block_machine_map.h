@@ -19,6 +19,7 @@ class BlockMachineMap final : public BlockMap {
                     const surface::Camera& camera, const Size& picture);
 
     const BlockFrame& frame() const { return m_frame; }
+    const Size& picture() const { return m_picture; }
     /// The distance on the screen of what a pixel shows from where it belongs, 0 where nothing is seen.
     double landing_error(int x, int y) const;
 

@@ -11,26 +11,69 @@ namespace anamorph::machine {
 namespace {
 
 /// Products for a block beside the surface's: affine transformation 9, projection 2, differences 4 (2.4 to 2.7), inverse 6
-/// (2.11). And divisions: by the depth, by the determinant.
-constexpr int kMultiplies = 9 + 2 + 4 + 6, kDivisions = 2;
+/// (2.11). And divisions: by the depth, by the determinant. With depths: 2 differences more, and 4 for what a pixel gains.
+constexpr int kMultiplies = 9 + 2 + 4 + 6, kDivisions = 2, kDepthMultiplies = 2 + 4;
+
+/// Cycles of the processors: products and divisions of all blocks, which they share, and the sort, which one list goes through:
+/// each block, and each bucket.
+double processor_cycles(const BlockMachine& machine, double blocks, const OperationCounts& point) {
+    const double of_surface = machine.surface_multiplies
+                                  ? *machine.surface_multiplies
+                                  : point.products + double(machine.function_multiplies) * point.functions;
+    const int divisions = kDivisions + (machine.surface_multiplies ? 0 : point.divisions);
+    const bool in_depth = machine.hidden == Hiding::z_buffer;
+    const double products =
+        std::ceil((of_surface + kMultiplies + (in_depth ? kDepthMultiplies : 0)) / machine.multipliers);
+    const double of_blocks =
+        std::ceil(blocks / machine.processors) * (products + double(divisions) * machine.division_cycles);
+    return of_blocks + (in_depth ? 0 : blocks * machine.sort_cycles + machine.buckets);
+}
+
+/// Cycles of the address controller: a step from segment to segment; or a step, or four products, for each pixel of them.
+double controller_cycles(const BlockMachine& machine, const BlockCounts& counts) {
+    const double for_pixels = machine.addresses == Addressing::segments   ? 0
+                              : machine.addresses == Addressing::repeated ? double(counts.addressed)
+                                                                          : 4.0 * double(counts.addressed);
+    return double(counts.blocks) * machine.block_cycles + double(counts.segments) * machine.segment_cycles +
+           for_pixels;
+}
 
 std::vector<MachineStage> stages_of(const BlockMachine& machine, const BlockCounts& counts,
-                                    const Size& screen) {
+                                    const SurfaceCost& cost, const Size& picture, const Size& screen) {
     const double blocks = double(counts.blocks), pixels = double(counts.pixels);
-    const double products = std::ceil(double(machine.surface_multiplies + kMultiplies) / machine.multipliers);
-    const double of_processor = std::ceil(blocks / machine.processors);
-    const double scanned = double(screen.width) * screen.height, image = scanned * kBytesOfPixel;
-    return {
-        {"host computer", double(machine.host_cycles), 0, 0, "programs", 0},
-        {"micro-coded processors", of_processor * (products + double(kDivisions) * machine.division_cycles),
-         0, blocks * kBytesOfBlock, "block data memory", 2 * blocks * kBytesOfBlock},
-        {"address controller",
-         blocks * machine.block_cycles + double(counts.segments) * machine.segment_cycles,
-         blocks * kBytesOfBlock, 0, "", 0},
-        // Four texels are read, a pixel is written.
-        {"pixel processor", std::ceil(pixels / machine.pixel_units), pixels * 4 * kBytesOfPixel,
-         pixels * kBytesOfPixel, "output image memory", 2 * image},
-        {"output", scanned, image, 0, "", 0}};
+    const double pixel_bytes =
+        machine.texel_bits > 0 ? 3 * std::ceil(machine.texel_bits / 8.0) : kBytesOfPixel;
+    const double scanned = double(screen.width) * screen.height, image = scanned * pixel_bytes;
+    const double texels = double(picture.width) * picture.height;
+    const double told = (kNumbersOfFrame + cost.numbers) * kBytesOfNumber * machine.processors;
+    // A depth is read and, where it is the least so far, written.
+    const double depth = machine.hidden == Hiding::z_buffer ? std::ceil(machine.depth_bits / 8.0) : 0;
+    std::vector<MachineStage> stages(MachineSchedule::kStages);
+    stages[MachineSchedule::host] = {"host computer", double(machine.host_cycles), 0, told, "programs",
+                                     2 * told};
+    stages[MachineSchedule::processors] = {"micro-coded processors",
+                                           processor_cycles(machine, blocks, cost.point),
+                                           told,
+                                           blocks * kBytesOfBlock,
+                                           "block data memory",
+                                           2 * blocks * kBytesOfBlock};
+    stages[MachineSchedule::controller] = {
+        "address controller", controller_cycles(machine, counts), blocks * kBytesOfBlock, 0, "", 0};
+    // Four texels are read, a pixel is written.
+    stages[MachineSchedule::pixels] = {"pixel processor",
+                                       double(counts.pixel_cycles),
+                                       pixels * (4 * pixel_bytes + depth),
+                                       pixels * (pixel_bytes + depth),
+                                       "output image memory",
+                                       2 * image};
+    stages[MachineSchedule::output] = {"output", scanned, image, 0, "", 0};
+    stages[MachineSchedule::input] = {"input",
+                                      texels,
+                                      texels * kBytesOfPixel,
+                                      texels * pixel_bytes,
+                                      "input image memory",
+                                      2 * texels * pixel_bytes};
+    return stages;
 }
 
 /// The cycles of the two stages that draw, each frame.
@@ -38,20 +81,32 @@ double drawing_cycles(const std::vector<MachineStage>& stages) {
     return std::max(stages[MachineSchedule::controller].cycles, stages[MachineSchedule::pixels].cycles);
 }
 
+/// Cycles from one shown frame to the next. Without a clock the slowest stage sets them. With one, a frame is drawn while the one
+/// before is shown, and is shown from the next tick on: drawing and output take whole ticks. What lies before them needs none:
+/// if it is slower, some frames come a tick later than others.
+double period_of(const std::vector<MachineStage>& stages, double tick) {
+    using S = MachineSchedule;
+    double shown = std::max(drawing_cycles(stages), stages[S::output].cycles);
+    if (tick > 0) shown = std::ceil(shown / tick) * tick;
+    return std::max({shown, stages[S::host].cycles, stages[S::processors].cycles, stages[S::input].cycles});
+}
+
 /// What stages wait once the buffers have filled: those before the slowest one for room behind them, those after it for what
 /// it makes. Of the two that draw, the faster one waits for the other, too: the queue between them is full, or empty.
-void set_waits(std::vector<MachineStage>& stages) {
+void set_waits(std::vector<MachineStage>& stages, double period) {
     using S = MachineSchedule;
     const double drawing = drawing_cycles(stages);
-    double period = 0;
-    for (const MachineStage& stage : stages) period = std::max(period, stage.cycles);
-    bool after = false;
-    for (std::size_t s = 0; s < stages.size(); ++s) {
-        const bool draws = s == S::controller || s == S::pixels;
-        const double busy = draws ? drawing : stages[s].cycles;
-        after = after || busy == period;
-        (after ? stages[s].starved : stages[s].blocked) = period - busy;
-    }
+    const bool host_binds = stages[S::host].cycles == period,
+               maps_bind =
+                   host_binds || stages[S::processors].cycles == period || stages[S::input].cycles == period;
+    for (const S::Place place : {S::host, S::input}) stages[place].blocked = period - stages[place].cycles;
+    const auto wait = [&](S::Place place, bool for_input, double busy) {
+        (for_input ? stages[place].starved : stages[place].blocked) = period - busy;
+    };
+    wait(S::processors, host_binds, stages[S::processors].cycles);
+    wait(S::controller, maps_bind, drawing);
+    wait(S::pixels, maps_bind, drawing);
+    wait(S::output, true, stages[S::output].cycles);
     stages[S::controller].blocked += drawing - stages[S::controller].cycles;
     stages[S::pixels].starved += drawing - stages[S::pixels].cycles;
 }
@@ -60,15 +115,18 @@ void set_waits(std::vector<MachineStage>& stages) {
 class FrameRun {
   public:
     explicit FrameRun(MachineSchedule& schedule) : m_schedule(schedule) {
-        for (std::size_t f = 0; f < MachineSchedule::kFrames; ++f) add_frame(f);
+        for (std::size_t f = 0; f < S::kFrames; ++f) add_frame(f);
     }
 
   private:
     using S = MachineSchedule;
 
+    const MachineVisit& at(std::size_t frame, S::Place stage) const {
+        return m_schedule.frames[frame][stage];
+    }
     /// When a stage is done with a frame; at the start it is with those before the first.
     double done(S::Place stage, std::size_t frame, std::size_t before = 0) const {
-        return frame < before ? 0 : m_schedule.frames[frame - before][stage].end;
+        return frame < before ? 0 : at(frame - before, stage).end;
     }
 
     /// A stage begins when it is done with the frame before, what it reads is there, and the half of the buffer that it
@@ -77,16 +135,29 @@ class FrameRun {
         m_schedule.frames.emplace_back(std::size_t{S::kStages});
         visit(S::host, f, 0, done(S::processors, f, 2));
         visit(S::processors, f, done(S::host, f), done(S::pixels, f, 2));
+        visit(S::input, f, 0, done(S::pixels, f, 2));
         for (const S::Place drawing : {S::controller, S::pixels}) {
-            visit(drawing, f, done(S::processors, f), done(S::output, f, 2));
-            m_schedule.frames[f][drawing].end =
-                m_schedule.frames[f][drawing].begin + drawing_cycles(m_schedule.stages);
+            visit(drawing, f, std::max(done(S::processors, f), done(S::input, f)), free_output(f));
+            m_schedule.frames[f][drawing].end = at(f, drawing).begin + drawing_cycles(m_schedule.stages);
         }
         visit(S::output, f, done(S::pixels, f), 0);
+        if (m_schedule.tick > 0) show_at_tick(m_schedule.frames[f][S::output]);
     }
     void visit(S::Place place, std::size_t f, double input, double room) {
         const double ready = done(place, f, 1), fed = std::max(ready, input), begin = std::max(fed, room);
         m_schedule.frames[f][place] = {ready, fed, begin, begin + m_schedule.stages[place].cycles};
+    }
+    /// When the half of the output image memory is free that a frame is drawn to: the frame before the last, which it holds, is shown
+    /// until the last one is where there is a clock, and else once.
+    double free_output(std::size_t f) const {
+        if (m_schedule.tick == 0) return done(S::output, f, 2);
+        return f < 2 ? 0 : at(f - 1, S::output).begin;
+    }
+    /// A frame is shown from a tick on, for as many ticks as it takes to put it out.
+    void show_at_tick(MachineVisit& visit) const {
+        const double tick = m_schedule.tick;
+        visit.begin = std::ceil(visit.fed / tick) * tick;
+        visit.end = visit.begin + std::ceil(m_schedule.stages[S::output].cycles / tick) * tick;
     }
 
     MachineSchedule& m_schedule;
@@ -105,16 +176,19 @@ class Timeline {
         : m_schedule(schedule), m_end(schedule.frames[kShown - 1][MachineSchedule::output].end) {}
 
     std::string draw() {
+        using S = MachineSchedule;
         add_keys();
-        for (std::size_t s = 0; s < m_schedule.stages.size(); ++s) {
-            add_stage(s);
-            if (!m_schedule.stages[s].buffer.empty()) add_buffer(s);
+        for (const S::Place place : {S::host, S::processors, S::input, S::controller, S::pixels, S::output}) {
+            add_stage(place);
+            if (!m_schedule.stages[place].buffer.empty()) add_buffer(place);
         }
         add_axis();
-        add_text(8, m_y + 56,
-                 rounded(m_schedule.frame_ms(), 3) + " ms a frame, " +
-                     rounded(1000 / m_schedule.frame_ms(), 2) + " frames a second; the bottleneck is the " +
-                     m_schedule.bottleneck().name);
+        add_text(
+            8, m_y + 56,
+            rounded(m_schedule.frame_ms(), 3) + " ms a frame, " + rounded(1000 / m_schedule.frame_ms(), 2) +
+                " frames a second; the bottleneck is the " + m_schedule.bottleneck().name +
+                (m_schedule.tick > 0 ? "; one is shown every " + rounded(m_schedule.shown_ms(), 3) + " ms"
+                                     : ""));
         return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(kLeft + kWidth + 30) +
                "\" height=\"" + rounded(m_y + 70, 0) +
                "\" font-family=\"sans-serif\" font-size=\"12\">\n<defs><pattern id=\"blocked\" width=\"6\" "
@@ -171,7 +245,10 @@ class Timeline {
             const MachineVisit& visit = m_schedule.frames[f][s];
             const double worked = visit.begin + stage.cycles;
             add_bar(visit.ready, visit.fed, m_y, 20, kStarved, stage.name + ": waits for input");
-            add_bar(visit.fed, visit.begin, m_y, 20, kBlocked, stage.name + ": waits for room");
+            if (s == MachineSchedule::output)
+                add_bar(visit.fed, visit.begin, m_y, 20, kStarved, stage.name + ": waits for the clock");
+            else
+                add_bar(visit.fed, visit.begin, m_y, 20, kBlocked, stage.name + ": waits for room");
             add_bar(visit.begin, worked, m_y, 20, kColors[f], stage.name + ": " + frame_text(f));
             const bool full = s == MachineSchedule::controller;
             add_bar(worked, visit.end, m_y, 20, full ? kBlocked : kStarved,
@@ -180,11 +257,21 @@ class Timeline {
         m_y += 26;
     }
 
-    /// A half holds a frame from when it is begun until the next stage is done with it.
+    /// When what reads a stage's buffer is done with a frame.
+    double read_until(std::size_t stage, std::size_t frame) const {
+        using S = MachineSchedule;
+        const auto& at = m_schedule.frames;
+        if (stage == S::host) return at[frame][S::processors].end;
+        if (stage == S::pixels)
+            return m_schedule.tick > 0 ? at[frame + 1][S::output].begin : at[frame][S::output].end;
+        return at[frame][S::pixels].end;
+    }
+
+    /// A half holds a frame from when it is begun until what reads it is done with it.
     void add_buffer(std::size_t s) {
         add_text(20, m_y + 12, m_schedule.stages[s].buffer, " fill=\"#555555\" font-size=\"11\"");
         for (std::size_t f = 0; f < kShown; ++f)
-            add_bar(m_schedule.frames[f][s].begin, m_schedule.frames[f][s + 1].end,
+            add_bar(m_schedule.frames[f][s].begin, std::min(read_until(s, f), m_end),
                     m_y + (f % 2 == 0 ? 0 : 9), 7, kColors[f],
                     m_schedule.stages[s].buffer + ": " + frame_text(f));
         m_y += 24;
@@ -221,12 +308,21 @@ const MachineStage& MachineSchedule::bottleneck() const {
     });
 }
 
-MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const Size& screen) {
+int MachineSchedule::ticks_late(std::size_t frame) const {
+    if (tick == 0 || frame == 0) return 0;
+    const double after = frames[frame][output].begin - frames[frame - 1][output].begin;
+    return static_cast<int>(std::min(std::round(after / tick) - 1, 1e9));
+}
+
+MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const SurfaceCost& cost,
+                            const Size& picture, const Size& screen) {
     MachineSchedule schedule;
     schedule.counts = counts;
     schedule.clock_mhz = machine.clock_mhz;
-    schedule.stages = stages_of(machine, counts, screen);
-    set_waits(schedule.stages);
+    schedule.tick = machine.frame_clock_ms * machine.clock_mhz * 1000;
+    schedule.stages = stages_of(machine, counts, cost, picture, screen);
+    schedule.period = period_of(schedule.stages, schedule.tick);
+    set_waits(schedule.stages, schedule.period);
     FrameRun{schedule};
     return schedule;
 }
@@ -242,6 +338,16 @@ std::string schedule_csv(const MachineSchedule& schedule) {
             text += "," + shortest(value);
         text += "\n";
     }
+    return text;
+}
+
+std::string schedule_frames_csv(const MachineSchedule& schedule) {
+    using S = MachineSchedule;
+    std::string text = "frame,drawn_ms,shown_ms,ticks_late\n";
+    for (std::size_t f = 0; f < schedule.frames.size(); ++f)
+        text += std::to_string(f + 1) + "," + shortest(schedule.ms(schedule.frames[f][S::pixels].end)) + "," +
+                shortest(schedule.ms(schedule.frames[f][S::output].begin)) + "," +
+                std::to_string(schedule.ticks_late(f)) + "\n";
     return text;
 }
 

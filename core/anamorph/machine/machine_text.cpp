@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -151,7 +152,14 @@ BlockMachine block_machine_from_text(std::string_view text) {
     members.read(kProcessorsRow, machine.processors);
     members.read(kMultipliersRow, machine.multipliers);
     members.read(kDivisionRow, machine.division_cycles);
-    members.read(kSurfaceRow, machine.surface_multiplies);
+    double products = kSurfaceRow.standard;
+    members.read(kSurfaceRow, products);
+    if (!std::isnan(products)) machine.surface_multiplies = static_cast<int>(products);
+    members.read(kFunctionRow, machine.function_multiplies);
+    members.read(kBucketsRow, machine.buckets);
+    members.read(kSortRow, machine.sort_cycles);
+    members.read("coordinates", machine.coordinates, {kFloat16, kFloat24, kFloat32});
+    members.read("coefficients", machine.coefficients, {kFloat16, kFloat24, kFloat32});
     members.read(kHostRow, machine.host_cycles);
     members.read(kSetupRow, machine.block_cycles);
     members.read(kSegmentCyclesRow, machine.segment_cycles);
@@ -159,6 +167,15 @@ BlockMachine block_machine_from_text(std::string_view text) {
     members.read(kPixelUnitsRow, machine.pixel_units);
     members.read(kAddressBitsRow, machine.address_bits);
     members.read(kFractionBitsRow, machine.fraction_bits);
+    members.read("addresses", machine.addresses,
+                 {{"segments", Addressing::segments},
+                  {"repeated", Addressing::repeated},
+                  {"direct", Addressing::direct}});
+    members.read("hidden", machine.hidden, {{"sort", Hiding::sort}, {"z-buffer", Hiding::z_buffer}});
+    members.read(kDepthBitsRow, machine.depth_bits);
+    members.read(kTapWeightRow, machine.weight_bits);
+    members.read(kTexelBitsRow, machine.texel_bits);
+    members.read(kFrameClockRow, machine.frame_clock_ms);
     members.read(kOkaBlockRow, machine.block);
     members.read(kOkaOverlapRow, machine.overlap);
     members.finish();

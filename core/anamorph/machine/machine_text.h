@@ -28,8 +28,8 @@ ShaderUnit shader_unit_from_text(std::string_view text);
 /// The name of the preset for the machine of Oka 1987, section 3.
 inline constexpr const char* kBlockPreset = "oka-1987";
 
-/// Parses a machine of kBlockPreset, with any of the names of the rows of block_machine.h as keys. Throws Error naming
-/// `machine` and the key.
+/// Parses a machine of kBlockPreset, with any of the names of the rows of block_machine.h as keys, and coordinates, coefficients,
+/// addresses and hidden. Throws Error naming `machine` and the key.
 BlockMachine block_machine_from_text(std::string_view text);
 
 }  // namespace anamorph::machine

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "anamorph/machine/block_machine_map.h"
+#include "anamorph/machine/block_pixels.h"
 #include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/drape_surface.h"
@@ -220,6 +221,10 @@ std::optional<machine::BlockMachine> machine_of(const ParameterValues& values,
     for (const char* name : {"background", "backdrop", "back"})
         if (values.given(name))
             throw Error(name, printable(values.text(name)), "must not be given with scheme=hardware");
+    if (options.filter != Filter::antialias && options.filter != Filter::bilinear &&
+        options.filter != Filter::nearest)
+        throw Error("filter", values.text("filter"),
+                    "must be antialias, bilinear or nearest with scheme=hardware");
     return machine;
 }
 
@@ -310,8 +315,9 @@ class DrapeRequest {
         return machine_of(values, options(values));
     }
     const Size& source() const { return m_source; }
+    surface::SurfaceSum sum(const ParameterValues& values) const { return m_surfaces->sum_of(values); }
     std::shared_ptr<const surface::DrapedSurface> surface(const ParameterValues& values) const {
-        const auto tree = m_surfaces->tree_of(m_surfaces->sum_of(values));
+        const auto tree = m_surfaces->tree_of(sum(values));
         return {tree, &tree->tree.surface()};
     }
     surface::Drape drape(const ParameterValues& values, const Size& shown,
@@ -402,9 +408,12 @@ class SolvedByBlocks final : public SolvedPicture {
     SolvedByBlocks(const DrapeRequest& request, const ParameterValues& values, const Size& size)
         : m_map(std::make_shared<machine::BlockMachineMap>(*request.machine(values), request.surface(values),
                                                            request.camera(values, size), request.source())),
-          m_schedule(machine::schedule_of(*request.machine(values), m_map->frame().counts, size)) {
+          m_schedule(machine::schedule_of(*request.machine(values), m_map->frame().counts,
+                                          machine::cost_of(request.sum(values)), request.source(), size)) {
         const surface::DrapeOptions options = request.options(values);
         const Chart flat(Projection::rectilinear, request.source().width, request.source().height);
+        if (options.output == Output::color && options.own == surface::DrapeOutput::shared)
+            m_pixels.emplace(m_map, *request.machine(values), Border(flat, options.wrap), options.filter);
         m_picture = picture_through(m_map, Border(flat, options.wrap), options.filter, options.output);
         if (options.output == Output::error)
             m_picture.value = [map = m_map.get()](double x, double y) {
@@ -419,17 +428,22 @@ class SolvedByBlocks final : public SolvedPicture {
                 {"anamorph:exact_fraction", 0.0},
                 {"anamorph:patches", static_cast<int>(counts.blocks)},
                 {"anamorph:saturated_pixels", static_cast<double>(counts.saturated)},
+                {"anamorph:cracks", static_cast<double>(counts.cracks)},
+                {"anamorph:misordered_pixels", static_cast<double>(counts.misordered)},
                 {"anamorph:frame_ms", m_schedule.frame_ms()},
+                {"anamorph:shown_ms", m_schedule.shown_ms()},
                 {"anamorph:bottleneck", m_schedule.bottleneck().name}};
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
+        if (m_pixels) return m_pixels->draw(sources[0], box, view, parallel_for);
         return m_picture.draw(sources[0], box, view, parallel_for);
     }
 
   private:
     std::shared_ptr<const machine::BlockMachineMap> m_map;
     machine::MachineSchedule m_schedule;
+    std::optional<machine::BlockPixels> m_pixels;  ///< of colours
     Picture m_picture;
 };
 

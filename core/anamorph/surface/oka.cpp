@@ -238,10 +238,13 @@ bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& p
     glm::dvec3 row[3], column[3];
     see_grid(surface, camera, u, std::span(v).subspan(1, 1), row);
     see_grid(surface, camera, std::span(u).subspan(1, 1), v, column);
-    const glm::dvec3 &left = row[0], &right = row[2], &above = column[0], &below = column[2];
+    block.left = row[0];
     block.centre = row[1];
-    block.by_u = (right - left) / (2 * side_u);
-    block.by_v = (below - above) / (2 * side_v);
+    block.right = row[2];
+    block.above = column[0];
+    block.below = column[2];
+    block.by_u = (block.right - block.left) / (2 * side_u);
+    block.by_v = (block.below - block.above) / (2 * side_v);
     if (!is_finite(block.centre) || !is_finite(block.by_u) || !is_finite(block.by_v)) return false;
     block.u = (i + 0.5) * side_u;
     block.v = (j + 0.5) * side_v;

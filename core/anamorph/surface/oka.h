@@ -28,6 +28,8 @@ struct OkaBlock {
     double u, v;            ///< its centre
     double u0, u1, v0, v1;  ///< its rectangle and its share of the common area, within the picture
     glm::dvec3 centre, by_u, by_v;
+    glm::dvec3 left, right, above,
+        below;  ///< the centres of its neighbours, by which by_u and by_v are found
 };
 
 /// Blocks across and down a picture. Throws Error where there are more than four million.

@@ -12,6 +12,7 @@
 #include <map>
 #include <set>
 
+#include "anamorph/deform/deformation_file.h"
 #include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/machine/machine_texture.h"
@@ -32,7 +33,8 @@ struct Settings {
     std::string program, output = "-", arithmetic = "float24", size = "512";
     std::vector<std::string> textures, constants;
     int weight_bits = 8;
-    std::string machine = kBlockPreset, surface = "plane", picture = "512";
+    std::string machine = kBlockPreset, surface = "plane", picture = "512", deformations;
+    bool frames = false;
 };
 
 /// At most kMostRead bytes.
@@ -172,10 +174,15 @@ class Command {
             "What a frame of the machine of 1987 costs, stage by stage: a table, or a timeline (.svg)",
             [this] { schedule(); });
         add_output(sub);
+        sub->add_flag("--frames", m_settings.frames,
+                      "The first frames, a line each: when they are drawn and shown, and how late");
         sub->add_option("--machine", m_settings.machine, "Its parameters, as in recipes of .drape")
             ->option_text("TEXT [oka-1987]");
         sub->add_option("--surface", m_settings.surface, "That the picture lies on, in front of the camera")
             ->option_text("NAME [plane]");
+        sub->add_option("--deformations", m_settings.deformations,
+                        "A list of bumps that move the surface, as .drape reads it")
+            ->option_text("FILE");
         sub->add_option("--picture", m_settings.picture, "Width and height of the picture")
             ->option_text("NxM [512]");
         sub->add_option("--size", m_settings.size, "Width and height of the screen")
@@ -199,10 +206,15 @@ class Command {
         CameraPose pose;
         pose.position = {0, 0, shape.aspect / (2 * std::tan(pose.fov * (kPi / 360)))};
         const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), screen);
-        const auto surface = make_surface(static_cast<std::size_t>(found - names.begin()), shape);
-        const BlockFrame frame = run_block_machine(machine, *surface, camera, picture);
-        const MachineSchedule made = schedule_of(machine, frame.counts, screen);
-        write(text_file::ends_with(m_settings.output, ".svg") ? schedule_svg(made) : schedule_csv(made));
+        SurfaceSum sum{.parts = {{static_cast<std::size_t>(found - names.begin())}}, .shape = shape};
+        if (!m_settings.deformations.empty())
+            sum.deformations =
+                parse_deformations_file(file_text(m_settings.deformations), m_settings.deformations);
+        const BlockFrame frame = run_block_machine(machine, *make_surface(sum), camera, picture);
+        const MachineSchedule made = schedule_of(machine, frame.counts, cost_of(sum), picture, screen);
+        write(text_file::ends_with(m_settings.output, ".svg") ? schedule_svg(made)
+              : m_settings.frames                             ? schedule_frames_csv(made)
+                                                              : schedule_csv(made));
     }
 
     void write(const std::string& text) const {
