@@ -151,9 +151,11 @@ film film 48 "$morph&t={FRAME_NUMBER/48}"
 # The same picture as a page that is turned; a face that a list of deformations raises from its picture, turned before the
 # camera (Oka 1987, section 4.1).
 film page 24 "$a.drape?surface=page_turn&direction=-25&radius=0.12&shading=phong&light=0.3,0.4,1&fov=35&camera=0.3,-0.7,2&background=0.1,0.1,0.1&turn={FRAME_NUMBER/24}"
-cp ../../../examples/relief.csv .
+cp ../../../examples/{relief.csv,smile.csv,frown.csv,expressions.json} .
 relief="round.png.drape?deform=relief.csv&shading=phong&light=-0.6,0.5,1&ambient=0.35&fov=40&camera=0,0.3,1.9"
 film relief 24 "$relief&rotate=0,{-55+110*FRAME_NUMBER/24},0"
+# Expressions of that face, mixed by weights that key frames give (section 4.2).
+film expressions 40 "$relief&blend=smile.csv,frown.csv&weights=0,0&keys=expressions.json&frame={FRAME_NUMBER}"
 echo "relief.jpg: $relief&rotate=0,-34,0"
 oiiotool "$relief&rotate=0,-34,0" -o relief.jpg
 
@@ -193,5 +195,5 @@ table drape "$size" "" ""
 
 /usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
     little_planet.png cylindrical.png mercator.png cube_faces.png error.png round.png warp.jpg \
-    warp_error.png "$a" lines.jpg film.0024.jpg page.0012.jpg relief.jpg walker.png
+    warp_error.png "$a" lines.jpg film.0024.jpg page.0012.jpg relief.jpg expressions.0010.jpg walker.png
 echo "done: $out"

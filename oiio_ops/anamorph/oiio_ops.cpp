@@ -81,6 +81,8 @@ NamedFiles files_of(const Operation& operation, const ParameterValues& values) {
         const bool names_a_file = p.type == ParameterType::image || p.type == ParameterType::file;
         if (names_a_file && values.given(p.name)) files[p.name] = {values.text(p.name), ""};
     }
+    if (operation.named)
+        for (const LinkedFile& file : operation.named(values)) files[file.key] = {file.name, "", file.image};
     if (operation.linked) named.linked = operation.linked(values, files, side_file_reader());
     for (const LinkedFile& file : named.linked) files[file.key] = {file.name, ""};
     return named;

@@ -84,16 +84,19 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
     const auto take = [&](const std::vector<Assignment>& place, const fs::path& folder) {
         ParameterValues own(*operation.parameters);
         own.assign(place);
+        const auto enter = [&](const std::string& key, const std::string& file, bool image) {
+            const bool in_memory = has_extension(file, kBufferExtension);
+            const std::string path = (folder / std::string(base_of(file))).string();
+            recipe.files[key] = {in_memory ? file : without_detours(path) + file.substr(base_of(file).size()),
+                                 "", image};
+        };
         for (const Parameter& p : *operation.parameters) {
             if ((p.type != ParameterType::image && p.type != ParameterType::file) || !own.given(p.name))
                 continue;
-            const std::string& file = own.text(p.name);
-            const bool in_memory = has_extension(file, kBufferExtension);
-            const std::string path = (folder / std::string(base_of(file))).string();
-            recipe.files[p.name] = {
-                in_memory ? file : without_detours(path) + file.substr(base_of(file).size()), "",
-                p.type == ParameterType::image};
+            enter(p.name, own.text(p.name), p.type == ParameterType::image);
         }
+        if (operation.named)
+            for (const LinkedFile& file : operation.named(own)) enter(file.key, file.name, file.image);
         recipe.values.assign(place);
     };
     // A name may be that of the file that is drawn.

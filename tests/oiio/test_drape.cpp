@@ -2,8 +2,11 @@
 // Pictures on surfaces, in stock hosts: what lies behind them, surfaces from files, and films.
 #include <OpenImageIO/imagebufalgo.h>
 
+#include <OpenImageIO/strutil.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "anamorph/oiio_ops.h"
@@ -13,6 +16,7 @@ namespace anamorph {
 namespace {
 
 using namespace testing_oiio;
+namespace fs = std::filesystem;
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using testing::HasSubstr;
@@ -276,6 +280,30 @@ TEST_F(DrapeFiles, TheFarSideIsRefusedWhereItDoesNotFit) {
     ASSERT_TRUE(drape(turned, page, options({{"back", "back.exr"}, {"rotate", "0,180,0"}})))
         << turned.geterror();
     EXPECT_EQ(bytes(turned), read_pixels("page.exr.drape?back=back.exr&rotate=0,180,0").bytes);
+}
+
+/// Files that blend names are found beside the recipe file that names them, as others are, and a picture changes with them.
+TEST_F(DrapeFiles, DesignedSurfacesAreFoundBesideTheirRecipe) {
+    fs::create_directory("faces");
+    const auto list = [](double z) {
+        return OIIO::Strutil::fmt::format(
+            R"({{"deformations": [{{"vector": [0, 0, {}], "center": [0.5, 0.5], "extent": [0.3, 0.3]}}]}})",
+            z);
+    };
+    write_text("faces/smile.json", list(0.5));
+    write_text("both.json", list(0.25));
+    write_text("faces/face.drape", "src=../page.exr\nblend=smile.json\nweights=0.5\n");
+    const std::vector<std::byte> expected = read_pixels("page.exr.drape?deform=both.json").bytes;
+    EXPECT_EQ(read_pixels("faces/face.drape").bytes, expected);
+    EXPECT_EQ(read_pixels("page.exr.drape?blend=faces/smile.json&weights=0.5").bytes, expected);
+    EXPECT_THAT(open_error("page.exr.drape?blend=smile.json&weights=0.5"), HasSubstr("smile.json"));
+    const ImageBuf page("page.exr");
+    ImageBuf from_memory;
+    ASSERT_TRUE(drape(from_memory, page, options({{"blend", "faces/smile.json"}, {"weights", "0.5"}})))
+        << from_memory.geterror();
+    EXPECT_EQ(bytes(from_memory), expected);
+    write_text("faces/smile.json", list(0.75));
+    EXPECT_NE(read_pixels("faces/face.drape").bytes, expected);
 }
 
 }  // namespace

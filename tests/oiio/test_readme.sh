@@ -12,7 +12,7 @@ cd tree/build/demo/out
 "$PYTHON" "$examples/make_panorama.py" panorama.exr 512
 "$PYTHON" "$examples/make_faces.py" round.png long.png faces.csv
 cp -r "$examples/maps" .
-cp "$examples/bulge.json" "$examples/swirl.ps" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
+cp "$examples/bulge.json" "$examples/relief.csv" "$examples/smile.csv" "$examples/frown.csv" "$examples/swirl.ps" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
 lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
 oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
 oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
@@ -23,7 +23,7 @@ oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
 oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 "$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 65 ]
+[ "$(wc -l <one_liners.sh)" -eq 66 ]
 if ! command -v ffmpeg >/dev/null; then
     sed -i '/^ffmpeg /d' one_liners.sh
 fi

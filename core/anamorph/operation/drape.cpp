@@ -522,6 +522,7 @@ const Operation& drape_operation() {
         .make = [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
             return std::make_unique<Drapes>(std::make_shared<DrapeRequest>(input));
         },
+        .named = files_of_blend,
         .linked = linked_back};
     return operation;
 }

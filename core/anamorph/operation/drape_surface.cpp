@@ -9,6 +9,7 @@
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/parameter/text_file.h"
 #include "anamorph/surface/drape_rows.h"
 
 namespace anamorph {
@@ -40,25 +41,28 @@ std::vector<std::string> blended(const ParameterValues& values) {
     return names;
 }
 
-/// The surface and those that it is blended with, with weights of sum 1.
-std::vector<surface::SurfaceSum::Part> parts_of(const ParameterValues& values) {
-    const std::vector<std::string>&names = surface::all_surface_names(), blend = blended(values);
-    const std::vector<double> weights =
-        values.given("weights") ? values.numbers("weights") : std::vector<double>{};
-    if (weights.size() != blend.size())
+/// Does `blend` mean a file by a name? No surface has a dot.
+bool is_file(const std::string& name) {
+    return name.find('.') != std::string::npos;
+}
+bool is_list(const std::string& name) {
+    return text_file::ends_with(name, ".json") || text_file::ends_with(name, ".csv");
+}
+/// The key of a file of `blend` among side files.
+std::string key_of(const std::string& name) {
+    return "blend/" + name;
+}
+
+std::vector<double> weights_of(const ParameterValues& values, std::size_t count) {
+    std::vector<double> weights;
+    if (values.given("weights")) weights = values.numbers("weights");
+    if (weights.size() != count)
         throw Error("weights", std::to_string(weights.size()) + " numbers",
-                    "must be as many as surfaces in blend, " + std::to_string(blend.size()));
-    std::vector<surface::SurfaceSum::Part> parts = {{values.choice("surface"), 1}};
-    for (std::size_t i = 0; i < blend.size(); ++i) {
-        const auto found = std::find(names.begin(), names.end(), blend[i]);
-        if (found == names.end())
-            throw Error("blend", printable(blend[i]), "must be names of surfaces, separated by commas");
-        if (!(std::fabs(weights[i]) <= kMostWeight))
-            throw Error("weights", shortest(weights[i]), "must be numbers from -1e6 to 1e6");
-        parts[0].weight -= weights[i];
-        parts.push_back({static_cast<std::size_t>(found - names.begin()), weights[i]});
-    }
-    return parts;
+                    "must be as many as surfaces in blend, " + std::to_string(count));
+    for (const double weight : weights)
+        if (!(std::fabs(weight) <= kMostWeight))
+            throw Error("weights", shortest(weight), "must be numbers from -1e6 to 1e6");
+    return weights;
 }
 
 /// The first channels of an image, 1 to 3 of them.
@@ -77,11 +81,11 @@ std::vector<float> texels_of(const SideFile& file, const char* key, const SideFi
     return read_display(*image, channels, std::string(key) + " \"" + printable(file.name) + "\"");
 }
 
-std::shared_ptr<const surface::SampledField> read_positions(const SideFile& file,
+std::shared_ptr<const surface::SampledField> read_positions(const SideFile& file, const char* key,
                                                             const SideFileReader& reader) {
     return read_once<surface::SampledField>(file, "positions", [&] {
         Size size;
-        const std::vector<float> texels = texels_of(file, "positions", reader, 3, size);
+        const std::vector<float> texels = texels_of(file, key, reader, 3, size);
         return surface::SampledField(texels, size, 3);
     });
 }
@@ -119,6 +123,13 @@ std::string missing_of(const char* key, const surface::SampledField& field) {
 
 }  // namespace
 
+LinkedFiles files_of_blend(const ParameterValues& values) {
+    LinkedFiles files;
+    for (const std::string& name : blended(values))
+        if (is_file(name)) files.push_back({key_of(name), name, !is_list(name)});
+    return files;
+}
+
 ParameterTable drape_surface_rows() {
     using namespace rows;
     return {
@@ -129,7 +140,10 @@ ParameterTable drape_surface_rows() {
             "about the y axis; page_turn: a sheet curls round a cylinder that rolls over it; waves, "
             "ripples: plane and circular; positions: of the picture that the key positions names; formula: "
             "of px, py and pz"),
-        text("blend", "names of surfaces, separated by commas, that the surface is blended with, by weights"),
+        text("blend",
+             "names of surfaces, separated by commas, that the surface is blended with, by weights; among "
+             "them lists of deformations "
+             "(.json, .csv), which stand for the surface moved by them, and pictures of positions"),
         numbers("weights", -kInfinity,
                 "one for each surface of blend; what they lack to 1 is the weight of surface itself, and any "
                 "may be negative or above 1"),
@@ -180,7 +194,16 @@ DrapeSurfaces::DrapeSurfaces(const OperationInput& input, double aspect) : m_asp
         return field;
     };
     if (const SideFile* positions = file("positions"))
-        m_files.positions = keep("positions", read_positions(*positions, input.reader));
+        m_files.positions = keep("positions", read_positions(*positions, "positions", input.reader));
+    for (const std::string& name : blended(input.values)) {
+        const SideFile* designed = is_file(name) ? file(key_of(name).c_str()) : nullptr;
+        if (!designed) continue;
+        if (is_list(name))
+            m_designed[name].deformations =
+                parse_deformations_file(input.reader.text(designed->name), designed->name);
+        else
+            m_designed[name].positions = keep("blend", read_positions(*designed, "blend", input.reader));
+    }
     if (const SideFile* heights = file("height"))
         m_files.heights =
             keep("height", read_heights(*heights, input.values.number("height_smooth"), input.reader));
@@ -198,14 +221,42 @@ SpaceFormula DrapeSurfaces::formula_of(const ParameterValues& values) const {
     return parse_surface(text, {m_aspect, values.given("frame") ? values.number("frame") : 0});
 }
 
+/// Adds the surfaces of `blend` to a sum that has the surface itself, by weights of sum 1 (Oka 1987, eq. 4.3). A list that moves the
+/// surface S to S + D (4.1) adds w (S + D): what is taken from the weight of S comes back, and vectors are w V.
+void DrapeSurfaces::blend(const ParameterValues& values, surface::SurfaceSum& sum) const {
+    const std::vector<std::string>&names = surface::all_surface_names(), blend = blended(values);
+    const std::vector<double> weights = weights_of(values, blend.size());
+    for (std::size_t i = 0; i < blend.size(); ++i) {
+        const auto designed = m_designed.find(blend[i]);
+        if (designed != m_designed.end() && !designed->second.positions) {
+            for (Deformation moved : designed->second.deformations) {
+                moved.vector *= weights[i];
+                sum.deformations.push_back(moved);
+            }
+            continue;
+        }
+        const auto found =
+            std::find(names.begin(), names.end(), designed == m_designed.end() ? blend[i] : "positions");
+        if (found == names.end())
+            throw Error("blend", printable(blend[i]),
+                        "must be names of surfaces, separated by commas, or of files: lists of deformations "
+                        "(.json, .csv) or "
+                        "pictures of positions");
+        sum.parts[0].weight -= weights[i];
+        sum.parts.push_back({static_cast<std::size_t>(found - names.begin()), weights[i],
+                             designed == m_designed.end() ? nullptr : designed->second.positions});
+    }
+}
+
 surface::SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
     surface::SurfaceSum sum = m_files;
-    sum.parts = parts_of(values);
+    sum.parts = {{values.choice("surface"), 1}};
+    blend(values, sum);
     sum.shape = shape_of(values, m_aspect);
     sum.height_scale = values.number("height_scale");
     const auto has = [&](const char* name) {
         return std::any_of(sum.parts.begin(), sum.parts.end(), [&](const surface::SurfaceSum::Part& part) {
-            return surface::all_surface_names()[part.which] == name;
+            return surface::all_surface_names()[part.which] == name && !part.positions;
         });
     };
     check_formula_keys(values, has("formula"));

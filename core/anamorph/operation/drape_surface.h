@@ -2,6 +2,7 @@
 // The surfaces of the operation drape: their parameters and files.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,6 +13,9 @@
 #include "anamorph/surface/drape.h"
 
 namespace anamorph {
+
+/// The files that `blend` names among surfaces: all names that have an ending.
+LinkedFiles files_of_blend(const ParameterValues& values);
 
 /// The rows of a surface, without those by which it is turned and moved.
 ParameterTable drape_surface_rows();
@@ -36,9 +40,17 @@ class DrapeSurfaces {
             trees;  ///< the latest one first
     };
 
+    /// A surface of `blend` that is a file: the surface itself moved by a list of deformations, or one of positions.
+    struct Designed {
+        std::vector<Deformation> deformations;
+        std::shared_ptr<const surface::SampledField> positions;
+    };
+
     SpaceFormula formula_of(const ParameterValues& values) const;
+    void blend(const ParameterValues& values, surface::SurfaceSum& sum) const;
 
     double m_aspect;
+    std::map<std::string, Designed> m_designed;  ///< by names in blend
     surface::SurfaceSum m_files;
     std::string m_missing;
     std::unique_ptr<Kept> m_kept = std::make_unique<Kept>();

@@ -169,6 +169,9 @@ struct Operation {
     std::string main_file = {};
     /// The endings of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
     std::vector<std::string> endings = {};
+    /// Finds the files that are named among other words in a value, which hosts look for where they look for a value that is a file's
+    /// name. May be null.
+    LinkedFiles (*named)(const ParameterValues& values) = nullptr;
     /// Finds the files that the side files name; the picture changes with them. May be null. Throws Error.
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
                           const SideFileReader& reader) = nullptr;

@@ -391,15 +391,16 @@ std::unique_ptr<SurfacePart> make_part(const SurfaceSum& sum) {
     return std::make_unique<ReadPart<Reader>>(Reader{Formula(sum.shape), sum.heights, sum.height_scale});
 }
 
-std::unique_ptr<SurfacePart> make_part_of(std::size_t which, const SurfaceSum& sum) {
+std::unique_ptr<SurfacePart> make_part_of(const SurfaceSum::Part& part, const SurfaceSum& sum) {
     static const std::vector<MakePart> makers = {
 #define ANAMORPH_SURFACE(name, Type) make_part<shapes::Type>,
 #include "anamorph/surface/shape/list.h"
 #undef ANAMORPH_SURFACE
     };
-    if (which < makers.size()) return makers[which](sum);
-    if (which == makers.size())
-        return std::make_unique<ReadPart<PositionsReader>>(PositionsReader{sum.positions});
+    if (part.which < makers.size()) return makers[part.which](sum);
+    if (part.which == makers.size())
+        return std::make_unique<ReadPart<PositionsReader>>(
+            PositionsReader{part.positions ? part.positions : sum.positions});
     return std::make_unique<ReadPart<TextReader>>(TextReader{sum.formula.value()});
 }
 
@@ -417,8 +418,9 @@ std::vector<Deformation> enabled(std::vector<Deformation> list) {
 SummedSurface::SummedSurface(const SurfaceSum& sum)
     : m_deformations(enabled(sum.deformations)), m_reach(m_deformations) {
     for (const SurfaceSum::Part& part : sum.parts) {
-        m_parts.push_back(make_part_of(part.which, sum));
+        m_parts.push_back(make_part_of(part, sum));
         m_weights.push_back(part.weight);
+        if (part.positions) m_fields.push_back(part.positions);
         if (part.which == surface_names().size() + 1) m_text_weight += std::fabs(part.weight);
     }
     for (const auto& field : {sum.positions, sum.heights})

@@ -73,6 +73,7 @@ struct SurfaceSum {
     struct Part {
         std::size_t which = 0;  ///< place in surface_names(); after the last `positions`, and then `formula`
         double weight = 1;
+        std::shared_ptr<const SampledField> positions = {};  ///< of `positions`, where they are not the sum's
         bool operator==(const Part&) const = default;
     };
     std::vector<Part> parts = {{}};
