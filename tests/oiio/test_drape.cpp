@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures on surfaces, in stock hosts: what lies behind them, surfaces from files, and films.
 #include <OpenImageIO/imagebufalgo.h>
-
 #include <OpenImageIO/strutil.h>
 
 #include <algorithm>
