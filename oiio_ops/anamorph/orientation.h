@@ -53,6 +53,9 @@ class UprightSource final : public Source {
     Box extent(int level) const noexcept override {
         return m_order.upright_box(m_base.extent(level), m_base.size(level));
     }
+    Box data_window() const noexcept override {
+        return m_order.upright_box(m_base.data_window(), m_base.size(0));
+    }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
 

@@ -152,6 +152,91 @@ TEST_F(Coverage, IsFadedAsColorsAre) {
         }
 }
 
+/// A white image whose data window is `data` of a display window of 120x80.
+void write_framed(const std::string& name, const OIIO::ROI& data) {
+    OIIO::ImageSpec spec(data.width(), data.height(), 3, OIIO::TypeFloat);
+    spec.x = data.xbegin;
+    spec.y = data.ybegin;
+    spec.full_width = 120;
+    spec.full_height = 80;
+    OIIO::ImageBuf image(spec);
+    const float white[] = {1, 1, 1};
+    OIIO::ImageBufAlgo::fill(image, white);
+    write_image(image, name);
+}
+
+// Data windows inside of the display window, across its edges, beside it and around it: what the file has, no more.
+TEST_F(Coverage, IsWhatTheFileHas) {
+    const OIIO::ROI windows[] = {{31, 77, 12, 53},   {-20, 47, -8, 33},  {90, 141, 40, 95},
+                                 {-30, 151, 22, 41}, {127, 190, 10, 60}, {-37, 163, -5, 99},
+                                 {0, 120, 0, 80},    {119, 120, 79, 80}};
+    int number = 0;
+    for (const OIIO::ROI& data : windows) {
+        // Its own name each, which no cache knows yet.
+        const std::string name = "framed" + std::to_string(number++) + ".exr";
+        write_framed(name, data);
+        // One pixel for each of the display window: exactly its own.
+        const std::vector<float> own = read_floats(name + ".map?u=x&v=y&output=coverage");
+        for (int y = 0; y < 80; ++y)
+            for (int x = 0; x < 120; ++x) {
+                const bool has = data.contains(x, y);
+                ASSERT_EQ(own[static_cast<std::size_t>(120 * y + x)], has ? 1.0f : 0.0f) << x << " " << y;
+            }
+        // Half a pixel to the right: the mean of two, in closed form.
+        const std::vector<float> half =
+            read_floats(name + ".map?u=x+0.5&v=y&filter=bilinear&output=coverage");
+        for (int x = 0; x < 120; ++x) {
+            const int y = std::clamp((data.ybegin + data.yend) / 2, 0, 79);
+            const float truth =
+                0.5f * (data.contains(x, y) ? 1 : 0) + 0.5f * (data.contains(x + 1, y) ? 1 : 0);
+            ASSERT_FLOAT_EQ(half[static_cast<std::size_t>(120 * y + x)], truth) << x;
+        }
+        // However it is drawn and minified, what is white says it.
+        for (const std::string recipe :
+             {".lens?lens=3de4:k1=-0.3", ".lens?lens=3de4:k1=0.1&size=all", ".map?u=x*7-300&v=y*9-200",
+              ".map?u=x*13-600&v=y*5-150", ".pano?from=rectilinear&srcfov=70&fov=150&yaw=20&size=50x40",
+              ".pano?from=fisheye&srcfov=120&fov=160&size=30x20"})
+            for (const std::string filter : {"antialias", "bilinear", "bicubic", "nearest"}) {
+                SCOPED_TRACE(name + recipe + " " + filter);
+                const std::string drawn = name + recipe + "&filter=" + filter;
+                const std::vector<float> all = read_floats(drawn + "&alpha=1"),
+                                         cover = read_floats(drawn + "&output=coverage");
+                ASSERT_EQ(all.size(), 4 * cover.size());
+                for (std::size_t i = 0; i < cover.size(); ++i) {
+                    ASSERT_NEAR(all[4 * i + 3], all[4 * i], 2e-6) << i;
+                    ASSERT_EQ(all[4 * i + 3], cover[i]) << i;
+                }
+            }
+    }
+}
+
+// A part of a panorama, turned by its file, and one of two eyes have what the file has of them.
+TEST_F(Coverage, IsWhatTheFileHasOfParts) {
+    write_framed("part.exr", {31, 77, 12, 53});
+    for (const std::string keys : {"from=latlong&fov=110", "from=latlong&to=fisheye&fov=300&yaw=100",
+                                   "from=latlong&fov=110&wrap=black", "from=cylindrical&fov=90",
+                                   "from=latlong&srcfov=180&stereo=side-by-side&eye=right&fov=110"}) {
+        const std::string recipe = "part.exr.pano?size=60x40&" + keys;
+        SCOPED_TRACE(recipe);
+        const std::vector<float> all = read_floats(recipe + "&alpha=1");
+        double sum = 0;
+        for (std::size_t i = 0; i + 3 < all.size(); i += 4) {
+            ASSERT_NEAR(all[i + 3], all[i], 1e-5) << i / 4;
+            sum += static_cast<double>(all[i]);
+        }
+        EXPECT_GT(sum, 5);
+        EXPECT_LT(sum, 2300);
+    }
+    ASSERT_EQ(run("oiiotool part.exr --orientation 6 -o turned.exr").status, 0);
+    const std::vector<float> all = read_floats("turned.exr.lens?lens=3de4:k1=-0.1&alpha=1");
+    double sum = 0;
+    for (std::size_t i = 0; i + 3 < all.size(); i += 4) {
+        ASSERT_NEAR(all[i + 3], all[i], 1e-5) << i / 4;
+        sum += static_cast<double>(all[i]);
+    }
+    EXPECT_NEAR(sum, 46 * 41, 0.1 * 46 * 41);
+}
+
 // The chain is drawn from the first source, and covered by it.
 TEST_F(Coverage, GoesThroughChains) {
     const std::string inner = "(v.lens?lens=3de4:k1=-0.3&src=%s)",

@@ -20,6 +20,7 @@ class MirroredSource final : public Source {
     int levels() const noexcept override { return m_base.levels(); }
     Size size(int level) const noexcept override { return m_base.size(level); }
     Box extent(int level) const noexcept override { return in_base(level, m_base.extent(level)); }
+    Box data_window() const noexcept override { return in_base(0, m_base.data_window()); }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override {
         if (!m_base.read(level, in_base(level, box), texels, row_stride)) return false;

@@ -19,6 +19,9 @@ class PartSource final : public Source {
     int unassociated_alpha() const noexcept override { return m_base.unassociated_alpha(); }
     int levels() const noexcept override { return static_cast<int>(m_levels.size()); }
     Size size(int level) const noexcept override { return at(level).size; }
+    Box data_window() const noexcept override {
+        return intersection(extent(0), moved(m_base.data_window(), -at(0).x0, -at(0).y0));
+    }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override {
         return m_base.read(level, in_base(level, box), texels, row_stride);

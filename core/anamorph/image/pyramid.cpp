@@ -13,19 +13,12 @@
 #include "anamorph/image/summed_areas.h"
 
 namespace anamorph {
-namespace {
-
-/// The texels of the finer level that one texel of the coarser one averages, along one axis: 2 to 4.
-struct Span {
-    int first, count;
-    std::array<float, 4> weight;
-};
 
 /// Texel `i` of `coarse` covers [i r, (i + 1) r) of `fine`, r = fine / coarse; here in units of 1 / coarse.
-Span span_of(int i, int fine, int coarse) {
+TexelSpan span_of_texel(int i, int fine, int coarse) noexcept {
     const std::int64_t from = std::int64_t{i} * fine, to = from + fine;
     const Box met = texels_over({i, 0, i + 1, 1}, {coarse, 1}, {fine, 1});
-    Span span{met.x0, 0, {}};
+    TexelSpan span{met.x0, 0, {}};
     for (std::int64_t k = met.x0; k < met.x1; ++k) {
         const std::int64_t overlap = std::min((k + 1) * coarse, to) - std::max(k * coarse, from);
         span.weight[static_cast<std::size_t>(span.count++)] =
@@ -34,9 +27,11 @@ Span span_of(int i, int fine, int coarse) {
     return span;
 }
 
-std::vector<Span> spans_of(int first, int end, int fine, int coarse) {
-    std::vector<Span> spans;
-    for (int i = first; i < end; ++i) spans.push_back(span_of(i, fine, coarse));
+namespace {
+
+std::vector<TexelSpan> spans_of(int first, int end, int fine, int coarse) {
+    std::vector<TexelSpan> spans;
+    for (int i = first; i < end; ++i) spans.push_back(span_of_texel(i, fine, coarse));
     return spans;
 }
 
@@ -90,9 +85,9 @@ void add_row(const std::byte* __restrict row, float weight, int values, int chan
 }
 
 /// Averages a row, which begins at texel `first` of the finer level.
-void average_row(const float* __restrict row, const std::vector<Span>& spans, int first, int channels,
+void average_row(const float* __restrict row, const std::vector<TexelSpan>& spans, int first, int channels,
                  float* __restrict average) {
-    for (const Span& span : spans) {
+    for (const TexelSpan& span : spans) {
         const float* from = row + std::ptrdiff_t{span.first - first} * channels;
         const float w0 = span.weight[0], w1 = span.weight[1];
         for (int c = 0; c < channels; ++c) average[c] = w0 * from[c] + w1 * from[channels + c];
@@ -114,12 +109,12 @@ void store_row(const float* __restrict values, int count, std::byte* __restrict 
 
 /// Averages `fine`, whose texel (0, 0) is `corner` of the finer level, to the coarser rows of `coarse`.
 template <class T>
-void reduce(const ConstImageView& fine, int corner_x, int corner_y, const std::vector<Span>& across,
-            const std::vector<Span>& down, int alpha, std::byte* coarse, std::ptrdiff_t row_stride) {
+void reduce(const ConstImageView& fine, int corner_x, int corner_y, const std::vector<TexelSpan>& across,
+            const std::vector<TexelSpan>& down, int alpha, std::byte* coarse, std::ptrdiff_t row_stride) {
     const int channels = fine.channels, values = fine.width * channels;
     const int count = static_cast<int>(across.size()) * channels;
     std::vector<float> sum(static_cast<std::size_t>(values)), average(static_cast<std::size_t>(count));
-    for (const Span& span : down) {
+    for (const TexelSpan& span : down) {
         std::fill(sum.begin(), sum.end(), 0.0f);
         for (int k = 0; k < span.count; ++k)
             add_row<T>(fine.at(0, span.first - corner_y + k), span.weight[static_cast<std::size_t>(k)],
@@ -233,8 +228,8 @@ const SummedAreas* Pyramid::summed_areas() const noexcept try {
 bool Pyramid::make_tile(int level, const Box& tile) const {
     const Level& to = at(level);
     const Size finer = size(level - 1);
-    const std::vector<Span> across = spans_of(tile.x0, tile.x1, finer.width, to.size.width);
-    const std::vector<Span> down = spans_of(tile.y0, tile.y1, finer.height, to.size.height);
+    const std::vector<TexelSpan> across = spans_of(tile.x0, tile.x1, finer.width, to.size.width);
+    const std::vector<TexelSpan> down = spans_of(tile.y0, tile.y1, finer.height, to.size.height);
     const Box box{across.front().first, down.front().first, across.back().first + across.back().count,
                   down.back().first + down.back().count};
 

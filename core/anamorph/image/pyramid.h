@@ -2,6 +2,7 @@
 // Coarser and coarser copies of an image, made where and when they are read.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -10,6 +11,14 @@
 #include "anamorph/image/source.h"
 
 namespace anamorph {
+
+/// The texels of a finer level that one texel of a coarser one averages, along one axis: 2 to 4, and how much each counts.
+struct TexelSpan {
+    int first, count;
+    std::array<float, 4> weight;
+};
+/// Texel `i` of a level with `coarse` texels, made of one with `fine`.
+TexelSpan span_of_texel(int i, int fine, int coarse) noexcept;
 
 /// A source with levels: the base's own if it has more than one, else each level is half of the one before
 /// (floor(w / 2) x floor(h / 2) texels), its texel i the average of [i r, (i + 1) r) with r
@@ -39,6 +48,7 @@ class Pyramid final : public Source {
     int levels() const noexcept override { return m_base.levels() + static_cast<int>(m_made.size()); }
     Size size(int level) const noexcept override;
     Box extent(int level) const noexcept override;
+    Box data_window() const noexcept override { return m_base.data_window(); }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int level) const noexcept override;

@@ -48,6 +48,9 @@ class Source {
     /// (overscan: a data window larger than the display window) the smallest rectangle around both. Texels of it that the
     /// image lacks are 0.
     virtual Box extent(int level) const noexcept { return SourceLevel(size(level)).extent; }
+    /// The texels of level 0 that the image has itself (its data window): a rectangle inside the extent, which may be smaller
+    /// than the picture or lie beyond its edges.
+    virtual Box data_window() const noexcept { return extent(0); }
     /// A level's size, and its texels.
     SourceLevel level(int level) const noexcept;
 
