@@ -175,10 +175,13 @@ StoredPixels stored_pixels(const ImageSpec& spec) {
     return {type, bytes / size_of(type)};
 }
 
+bool loses_values(TypeDesc type) {
+    return oiio_type(pixel_type(type)) != type;
+}
+
 bool loses_values(const ImageSpec& spec) {
-    const auto is_own = [](TypeDesc type) { return oiio_type(pixel_type(type)) == type; };
-    return !is_own(spec.format) ||
-           !std::all_of(spec.channelformats.begin(), spec.channelformats.end(), is_own);
+    return loses_values(spec.format) || std::any_of(spec.channelformats.begin(), spec.channelformats.end(),
+                                                    [](TypeDesc type) { return loses_values(type); });
 }
 
 Frame frame_of(const ImageSpec& spec) {

@@ -37,6 +37,8 @@ struct StoredPixels {
     int channels;
 };
 StoredPixels stored_pixels(const OIIO::ImageSpec& spec);
+/// Has the core no numbers for a type, so that it is read as float, which holds fewer digits, or other ones?
+bool loses_values(OIIO::TypeDesc type);
 /// Are some of an image's channels of a type that the core reads as float, or in a file of several types of channels as
 /// float, though it holds more digits, or other ones?
 bool loses_values(const OIIO::ImageSpec& spec);
@@ -98,6 +100,7 @@ class CacheSource final : public Source {
     int levels() const noexcept override { return static_cast<int>(m_levels.size()); }
     Size size(int level) const noexcept override { return frame(level).level().size; }
     Box extent(int level) const noexcept override { return frame(level).level().extent; }
+    Box data_window() const noexcept override { return frame(0).data; }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int level) const noexcept override;
@@ -153,6 +156,7 @@ class BufferSource final : public Source {
     int levels() const noexcept override { return 1; }
     Size size(int) const noexcept override { return m_frame.level().size; }
     Box extent(int) const noexcept override { return m_frame.level().extent; }
+    Box data_window() const noexcept override { return m_frame.data; }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int) const noexcept override { return m_view ? &*m_view : nullptr; }
@@ -206,6 +210,7 @@ class WorkingSource final : public Source {
     }  // an average before the conversion is not one after it
     Size size(int level) const noexcept override { return m_base.size(level); }
     Box extent(int level) const noexcept override { return m_base.extent(level); }
+    Box data_window() const noexcept override { return m_base.data_window(); }
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
 

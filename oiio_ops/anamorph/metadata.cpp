@@ -326,6 +326,18 @@ bool moves_stored(const PictureRequest& picture, const std::vector<ImageSpec>& s
            shown.channelformats == first.channelformats;
 }
 
+bool moves_channels_stored(const PictureRequest& picture, const std::vector<ImageSpec>& sources) {
+    if (sources.empty()) return false;
+    const ImageSpec& first = sources[0];
+    const auto is_alike = [&](const ImageSpec& other) {
+        return other.nchannels == first.nchannels && other.format == first.format &&
+               other.channelformats == first.channelformats;
+    };
+    return std::all_of(sources.begin(), sources.end(), is_alike) &&
+           std::any_of(picture.moved_channels.begin(), picture.moved_channels.end(),
+                       [&](int c) { return loses_values(first.channelformat(c)); });
+}
+
 ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, bool stored,
                        bool keeps_types) {
     ImageSpec spec = source ? *source : ImageSpec();

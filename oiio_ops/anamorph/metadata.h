@@ -37,6 +37,10 @@ int alpha_channel_of(const OIIO::ImageSpec& spec);
 bool moves_stored(const PictureRequest& picture, const std::vector<OIIO::ImageSpec>& sources,
                   const std::string& space);
 
+/// Are channels that a picture only moves, while others are computed with, of types that the core has no numbers for, in sources
+/// that store all channels alike?
+bool moves_channels_stored(const PictureRequest& picture, const std::vector<OIIO::ImageSpec>& sources);
+
 /// Sets attributes; numbers that are no integers as type float.
 void add_attributes(OIIO::ImageSpec& spec, const Attributes& attributes);
 

@@ -20,6 +20,8 @@ struct JoinSource {
     std::shared_ptr<const SolvedPicture> picture;
     Box shown;  ///< the display window, in pixels of the picture
     std::shared_ptr<const SourceStacks> stacks;
+    /// The same as they are stored, where some of their channels are moved so; else null.
+    std::shared_ptr<const SourceStacks> stored_stacks;
     std::string space;    ///< the color space that they are filtered in
     bool stored = false;  ///< are their pixels those that are stored, of any types?
     std::string key;      ///< where it is the same, the picture and its sources are

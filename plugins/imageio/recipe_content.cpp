@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recipe_content.h"
 
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -47,6 +48,11 @@ class Solved {
     explicit Solved(std::unique_ptr<const SolvedPicture> picture) : m_picture(std::move(picture)) {}
 
     const SolvedPicture& picture() const { return *m_picture; }
+    /// The picture of its channels that are only moved; null where there are none.
+    const SolvedPicture* moved() {
+        std::call_once(m_moved_once, [this] { m_moved = m_picture->of_moved(); });
+        return m_moved.get();
+    }
     const Attributes& reached() {
         std::call_once(m_once, [this] { m_reached = m_picture->reached(own_threads()); });
         return m_reached;
@@ -54,8 +60,9 @@ class Solved {
 
   private:
     std::unique_ptr<const SolvedPicture> m_picture;
-    std::once_flag m_once;
+    std::once_flag m_once, m_moved_once;
     Attributes m_reached;
+    std::unique_ptr<const SolvedPicture> m_moved;
 };
 
 /// The name by which the cache is asked for a source: another spelling of its path after each change of its
@@ -176,9 +183,17 @@ class RecipeContent final : public Content {
         const PictureRequest first = *m_pictures->picture(0, 0);
         m_space = filtering_space(values, first.pixels);
         m_stored = moves_stored(first, specs, m_space);
+        const std::vector<ImageSpec> of_sources(specs.begin(), specs.begin() + std::ssize(known));
+        m_moves_channels = !m_stored && moves_channels_stored(first, of_sources);
         m_chain = recipe.operation->name;
         join(recipe, images, first.pixels);
         if (!m_joined) make_stacks(images, specs, identity);
+        if (!m_joined && m_moves_channels) {
+            std::vector<OpenSource> again;
+            for (std::size_t i = 0; i < known.size(); ++i)
+                again.push_back(open_source(sources_of(recipe)[i], opening, images[i].part));
+            make_stored_stacks(again, of_sources, identity);
+        }
         // What is wrong with a picture is said when it is opened.
         for (int i = 0; subimages() == 1 && i < m_levels; ++i) {
             Level& l = level(0, i);
@@ -207,7 +222,7 @@ class RecipeContent final : public Content {
         const Level& l = this->level(subimage, level);
         const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
-        if (!m_stored && !l.header.channelformats.empty())
+        if (!m_stored && (!l.header.channelformats.empty() || loses_values(l.header.format)))
             return read_types(l, *solved, box, pixels, small ? serial_for : own_threads());
         const StoredPixels as = m_stored ? stored_pixels(l.header)
                                          : StoredPixels{pixel_type(l.header.format), l.header.nchannels};
@@ -222,6 +237,7 @@ class RecipeContent final : public Content {
         return JoinSource{std::shared_ptr<const SolvedPicture>(solved, &solved->picture()),
                           l.request.shown(),
                           m_stacks,
+                          m_stored_stacks,
                           m_space,
                           m_stored,
                           l.key,
@@ -240,7 +256,7 @@ class RecipeContent final : public Content {
     };
 
     /// Draws channels of several types: in float, and then each in its own.
-    void read_types(const Level& level, const Solved& solved, const Box& box, std::byte* pixels,
+    void read_types(const Level& level, Solved& solved, const Box& box, std::byte* pixels,
                     const ParallelFor& parallel_for) const {
         const ImageSpec& spec = level.header;
         const auto count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()),
@@ -257,6 +273,29 @@ class RecipeContent final : public Content {
                                 floats * box.width(), OIIO::AutoStride,
                                 pixels + (c > 0 ? spec.pixel_bytes(0, c, true) : 0), spec.channelformat(c),
                                 pixel, pixel * box.width(), OIIO::AutoStride);
+        if (m_stored_stacks && solved.moved())
+            move_channels(level, *solved.moved(), box, pixels, parallel_for);
+    }
+
+    /// Draws the channels that are only moved again, as the sources store them.
+    void move_channels(const Level& level, const SolvedPicture& moved, const Box& box, std::byte* pixels,
+                       const ParallelFor& parallel_for) const {
+        const Source& source = (*m_stored_stacks)[0]->top();
+        const ImageSpec& spec = level.header;
+        const auto count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()),
+                   from_pixel = static_cast<std::size_t>(source.channels() * size_of(source.type())),
+                   to_pixel = spec.pixel_bytes(true);
+        std::vector<std::byte> drawn(count * from_pixel);
+        draw_picture(moved, *m_stored_stacks, box,
+                     packed_view(drawn.data(), source.type(), box.width(), box.height(), source.channels()),
+                     parallel_for);
+        for (const int c : level.request.moved_channels) {
+            // What the picture has more stands behind the source's channels.
+            const std::size_t at = c > 0 ? spec.pixel_bytes(0, c, true) : 0,
+                              size = spec.channelformat(c).size();
+            for (std::size_t i = 0; i < count; ++i)
+                std::memcpy(pixels + i * to_pixel + at, drawn.data() + i * from_pixel + at, size);
+        }
     }
 
     struct OpenSource {
@@ -274,6 +313,7 @@ class RecipeContent final : public Content {
             return;
         }
         m_stacks = m_joined->stacks;
+        if (m_moves_channels) m_stored_stacks = m_joined->stored_stacks;
         m_key += "joined with " + m_joined->key;
         m_chain += " of " + m_joined->chain;
         m_said_of_chain = m_chain;
@@ -313,6 +353,20 @@ class RecipeContent final : public Content {
             for (OpenSource& open : images) sources.push_back(std::move(open.image));
             return std::make_shared<const SourceStacks>(
                 make_source_stacks(std::move(sources), specs, faces, m_space));
+        });
+    }
+
+    /// The sources as they are stored, for channels that are only moved.
+    void make_stored_stacks(std::vector<OpenSource>& images, const std::vector<ImageSpec>& specs,
+                            const std::string& identity) {
+        for (const OpenSource& open : images) keep_stored(open);
+        const SourceFaces faces = m_pictures->faces();
+        static auto& stacks = *new Memo<const SourceStacks>(2);
+        m_stored_stacks = stacks.get(identity, [&] {
+            std::vector<std::unique_ptr<Source>> sources;
+            for (OpenSource& open : images) sources.push_back(std::move(open.image));
+            return std::make_shared<const SourceStacks>(
+                make_source_stacks(std::move(sources), specs, faces, ""));
         });
     }
 
@@ -392,6 +446,8 @@ class RecipeContent final : public Content {
             made.request = *m_pictures->picture(subimage, number);
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
             made.header = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored, true);
+            // Channels that are moved keep the type of all of them.
+            if (m_moves_channels && made.header.channelformats.empty()) made.header.format = m_source->format;
             if (!m_part.empty()) say_part(made.header);
             if (!m_said_of_chain.empty()) made.header.attribute("anamorph:chain", m_said_of_chain);
             if (m_joined)
@@ -416,7 +472,9 @@ class RecipeContent final : public Content {
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
     int m_levels = 1;
-    bool m_stored = false;  ///< as moves_stored() says
+    bool m_stored = false;                                ///< as moves_stored() says
+    bool m_moves_channels = false;                        ///< as moves_channels_stored() says
+    std::shared_ptr<const SourceStacks> m_stored_stacks;  ///< for that
     mutable std::mutex m_mutex;
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level
 };

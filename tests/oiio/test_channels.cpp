@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that hold no colour, and channels of several types: ids and depth are moved, never mixed, unless that is asked for.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -166,6 +167,204 @@ TEST_F(Channels, OfIdsAloneKeepTheirBits) {
         EXPECT_EQ(found, ids) << recipe;
     }
     EXPECT_EQ(read_pixels("ids.exr.map?u=x&v=y&data_channels=none").spec.format, OIIO::TypeFloat);
+}
+
+/// A picture of colors and of ids of 32 bits, none of which float has. `types`: of each channel, or of all.
+class IdsAmongColors : public InFolder {
+  protected:
+    static unsigned id_at(int x, int y, unsigned first = 0) {
+        return 4000000001u + first + 2 * static_cast<unsigned>(y * kWidth + x);
+    }
+    static float color_at(int x, int y, int c) {
+        return 0.125f * static_cast<float>((x * (c + 3) + y * 5) % 8);
+    }
+    static void write(const std::string& name, TypeDesc color, unsigned first = 0, int height = kHeight) {
+        OIIO::ImageSpec spec(kWidth, height, 4, TypeDesc(TypeDesc::UINT32));
+        spec.channelnames = {"R", "G", "B", "id"};
+        spec.alpha_channel = -1;
+        if (color != TypeDesc(TypeDesc::UINT32))
+            spec.channelformats = {color, color, color, TypeDesc::UINT32};
+        std::vector<std::byte> pixels;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                for (int c = 0; c < 3; ++c) {
+                    const float value = color_at(x, y, c);
+                    std::byte stored[8];
+                    OIIO::convert_pixel_values(OIIO::TypeFloat, &value, color, stored, 1);
+                    pixels.insert(pixels.end(), stored, stored + color.size());
+                }
+                const unsigned id = id_at(x, y, first);
+                const auto* bytes = reinterpret_cast<const std::byte*>(&id);
+                pixels.insert(pixels.end(), bytes, bytes + sizeof id);
+            }
+        const auto output = OIIO::ImageOutput::create(name);
+        ASSERT_TRUE(output && output->open(name, spec) &&
+                    output->write_image(OIIO::TypeUnknown, pixels.data()) && output->close());
+    }
+    /// The ids of a picture, by whatever calls a host makes.
+    static std::vector<unsigned> ids_of(const std::string& name) {
+        const auto input = open(name);
+        if (!input) return {};
+        EXPECT_EQ(input->spec().channelformat(3), TypeDesc(TypeDesc::UINT32)) << name;
+        std::vector<unsigned> ids(input->spec().image_pixels());
+        EXPECT_TRUE(input->read_image(0, 0, 3, 4, TypeDesc(TypeDesc::UINT32), ids.data()))
+            << input->geterror();
+        return ids;
+    }
+};
+
+TEST_F(IdsAmongColors, KeepTheirBits) {
+    write("half.exr", TypeDesc::HALF);
+    write("float.exr", TypeDesc::FLOAT);
+    write("whole.tif", TypeDesc(TypeDesc::UINT32));
+    for (const std::string source : {"half.exr", "float.exr", "whole.tif"}) {
+        SCOPED_TRACE(source);
+        const std::string moved = source + ".map?u=x+2.25&v=y+1&filter=bilinear";
+        for (const std::string keys : {"", "&tile=0", "&tile=16", "&alpha=1", "&concatenate=0"}) {
+            const std::vector<unsigned> ids = ids_of(moved + keys);
+            for (int y = 0; y + 1 < kHeight; ++y)
+                for (int x = 0; x + 2 < kWidth; ++x)
+                    ASSERT_EQ(ids[static_cast<std::size_t>(y * kWidth + x)], id_at(x + 2, y + 1))
+                        << keys << " " << x << " " << y;
+            // Beyond the edges there is none.
+            EXPECT_EQ(ids.back(), 0u);
+        }
+        // Colors are mixed as ever.
+        const std::vector<float> seen = read_floats(moved);
+        for (int x = 0; x + 3 < kWidth; ++x)
+            ASSERT_NEAR(seen[static_cast<std::size_t>(4 * x)],
+                        0.75f * color_at(x + 2, 1, 0) + 0.25f * color_at(x + 3, 1, 0), 1e-3)
+                << x;
+        // Every id of any view is one that there is.
+        for (const std::string view :
+             {".pano?from=rectilinear&srcfov=60&fov=50&yaw=3&size=60x40", ".lens?lens=3de4:k1=-0.2",
+              ".warp?mesh=grid.json", ".pano?from=rectilinear&srcfov=60&to=formula&size=40x24"}) {
+            write_text("grid.json", R"({"columns": 1, "rows": 1, "units": "fractions", "vertices": [
+                [0.1, 0.05], [0.9, 0], [0, 1], [1, 0.9]]})");
+            int there = 0;
+            for (const unsigned id : ids_of(source + view)) {
+                if (id == 0) continue;
+                ASSERT_GE(id, 4000000001u) << view;
+                ASSERT_LT(id, id_at(0, kHeight)) << view;
+                ASSERT_EQ(id % 2, 1u) << view;
+                ++there;
+            }
+            EXPECT_GT(there, 600) << view;
+        }
+        // Through chains, joined or not.
+        for (const std::string keys : {"", "concatenate=0&"}) {
+            const std::vector<unsigned> ids =
+                ids_of("v.map?u=x+0.25&v=y&" + keys + "src=(" + source + ".map?u=x+1.5&v=y)");
+            for (int x = 0; x + 3 < kWidth; ++x)
+                ASSERT_EQ(ids[static_cast<std::size_t>(5 * kWidth + x)], id_at(x + 2, 5)) << keys << x;
+        }
+    }
+    // Films, eyes and written files.
+    write_text("pan.json", R"({"interpolation": "linear", "keys": {"yaw": [[0, 0], [4, 8]]}})");
+    const std::string view = "half.exr.pano?from=rectilinear&srcfov=60&fov=50&size=40x24";
+    EXPECT_EQ(ids_of(view + "&keys=pan.json&frame=2"), ids_of(view + "&yaw=4"));
+    EXPECT_EQ(ids_of("half.exr.pano?from=latlong&srcfov=180&stereo=side-by-side&eye=right&size=20x24&fov=90"),
+              ids_of("right.exr.pano?from=latlong&srcfov=180&size=20x24&fov=90&src=(half.exr.map?u=x+20&v=y&"
+                     "size=20x24)"));
+    ASSERT_EQ(run("iconvert 'half.exr.map?u=x+2.25&v=y' out.exr").status, 0);
+    EXPECT_EQ(ids_of("out.exr"), ids_of("half.exr.map?u=x+2.25&v=y"));
+}
+
+// Where pictures are blended, ids are those of the picture that counts most.
+TEST_F(IdsAmongColors, OfMorphsAreOfTheGreaterWeight) {
+    write("a.exr", TypeDesc::HALF);
+    write("b.exr", TypeDesc::HALF, 100000);
+    write("c.exr", TypeDesc::HALF, 200000);
+    write_text("lines.json", R"({"features": [{"line": [[4, 4, 30, 6], [8, 2, 32, 10]]}]})");
+    write_text("three.json", R"({"features": [{"line": [[4, 4, 30, 6], [8, 2, 32, 10], [6, 6, 28, 12]]}]})");
+    const std::string two = "v.morph?a=a.exr&b=b.exr&features=lines.json&t=0.4";
+    const std::vector<unsigned> of_a = ids_of(two + "&picture=a&filter=nearest"),
+                                of_b = ids_of(two + "&picture=b&filter=nearest");
+    EXPECT_NE(of_a, of_b);
+    EXPECT_EQ(ids_of(two), of_a);
+    EXPECT_EQ(ids_of(two + "&t_color=0.3"), of_a);
+    EXPECT_EQ(ids_of(two + "&t_color=0.5"), of_a);
+    EXPECT_EQ(ids_of(two + "&t_color=0.51"), of_b);
+    EXPECT_EQ(ids_of(two + "&t_color=0.3&filter=nearest"), of_a);
+    EXPECT_EQ(ids_of(two + "&t_color=0.7&output=lines"), of_b);
+    const std::string three =
+        "v.morph?a=a.exr&b=b.exr&c=c.exr&features=three.json&shape_weights=0.3,0.3,0.4&color_weights=";
+    EXPECT_EQ(ids_of(three + "0.2,0.3,0.5"), ids_of(three + "0,0,1&picture=c&filter=nearest"));
+    EXPECT_EQ(ids_of(three + "0.3,0.4,0.3"), ids_of(three + "0,1,0&picture=b&filter=nearest"));
+    // Colors are blended, and ids too where that is asked for.
+    const std::vector<float> blend = read_floats(two + "&t_color=0.3"), a = read_floats(two + "&picture=a"),
+                             b = read_floats(two + "&picture=b");
+    for (std::size_t i = 0; i + 3 < blend.size(); i += 4)
+        ASSERT_NEAR(blend[i], 0.7f * a[i] + 0.3f * b[i], 2e-3) << i;
+    EXPECT_NE(read_floats(two + "&t_color=0.3&data_channels=none"), blend);
+}
+
+TEST_F(IdsAmongColors, OfMosaicsAreOfTheNearestCircle) {
+    // Each circle has a color of its own, so that the mixture tells the weights.
+    OIIO::ImageSpec spec(96, 3 * 32, 4, OIIO::TypeFloat);
+    spec.channelnames = {"R", "G", "B", "id"};
+    spec.alpha_channel = -1;
+    OIIO::ImageBuf rings(spec);
+    for (int y = 0; y < spec.height; ++y)
+        for (int x = 0; x < spec.width; ++x) {
+            const float pixel[] = {y / 32 == 0 ? 1.0f : 0, y / 32 == 1 ? 1.0f : 0, y / 32 == 2 ? 1.0f : 0,
+                                   static_cast<float>(1 + y * spec.width + x)};
+            rings.setpixel(x, y, pixel);
+        }
+    write_image(rings, "rings.exr");
+    const std::string view = "rings.exr.mosaic?circles=3&x=0.3&z=0.2&fov=100&yaw=30&size=60x40&depth=3";
+    const std::vector<float> seen = read_floats(view);
+    std::vector<float> alone[3];
+    for (int k = 0; k < 3; ++k)
+        alone[k] = read_floats(view + "&filter=nearest&circle=" + std::to_string(k + 1));
+    int counts[3] = {};
+    for (std::size_t i = 0; i + 3 < seen.size(); i += 4) {
+        const auto* const greatest = std::max_element(&seen[i], &seen[i] + 3);
+        const auto k = static_cast<std::size_t>(greatest - &seen[i]);
+        float others[3] = {seen[i], seen[i + 1], seen[i + 2]};
+        std::sort(others, others + 3);
+        if (others[2] - others[1] < 1e-4f) continue;  // as good as equal
+        ASSERT_EQ(seen[i + 3], alone[k][i + 3]) << i / 4;
+        ++counts[k];
+    }
+    EXPECT_GT(std::count_if(counts, counts + 3, [](int count) { return count > 20; }), 1);
+    expect_one_picture(view, 5, 3);
+}
+
+TEST_F(IdsAmongColors, OfOpenShuttersAreOfTheFirstMoment) {
+    write("a.exr", TypeDesc::HALF);
+    write_text("pan.json", R"({"interpolation": "linear", "keys": {"yaw": [[0, 0], [4, 40]]}})");
+    const std::string view = "a.exr.pano?from=rectilinear&srcfov=60&fov=50&size=40x24";
+    EXPECT_EQ(ids_of(view + "&keys=pan.json&frame=2&shutter=0.5&samples=4"), ids_of(view + "&yaw=18.125"));
+}
+
+TEST_F(IdsAmongColors, OfDrapesAreOfWhatIsSeenInTheMiddle) {
+    write("a.exr", TypeDesc::HALF);
+    write("back.exr", TypeDesc::HALF, 100000);
+    write("behind.exr", TypeDesc::HALF, 200000);
+    const std::string drape = "v.drape?src=a.exr&surface=cylinder&angle=300&camera=0.4,0.5,2.4&size=40x24";
+    const std::vector<unsigned> bare = ids_of(drape + "&filter=nearest");
+    const std::vector<float> seen = read_floats(drape + "&output=seen");
+    EXPECT_GT(std::count(bare.begin(), bare.end(), 0u), 50);
+    EXPECT_GT(std::count_if(bare.begin(), bare.end(), [](unsigned id) { return id % 2 == 1; }), 200);
+    for (std::size_t i = 0; i < bare.size(); ++i) ASSERT_EQ(bare[i] != 0, seen[i] != 0) << i;
+    for (const std::string keys : {"", "&shading=phong", "&alpha=1", "&filter=pyramid", "&scheme=exact"})
+        EXPECT_EQ(ids_of(drape + keys), bare) << keys;
+    // With pictures on the far side and behind, in float: as near as that has them.
+    write("small.exr", TypeDesc::HALF);
+    const auto float_ids = [&](const std::string& keys) {
+        const std::vector<float> pixels = read_floats(drape + keys);
+        std::vector<float> ids;
+        for (std::size_t i = 3; i < pixels.size(); i += 4) ids.push_back(pixels[i]);
+        return ids;
+    };
+    const std::vector<float> behind = float_ids("&shading=phong&backdrop=behind.exr"),
+                             nothing = float_ids("&filter=nearest&data_channels=none");
+    const std::vector<float> stored = read_floats("behind.exr");
+    for (std::size_t i = 0; i < behind.size(); ++i)
+        ASSERT_FLOAT_EQ(behind[i], seen[i] != 0 ? nothing[i] : stored[4 * i + 3]) << i;
+    EXPECT_EQ(float_ids("&shading=phong&back=back.exr"),
+              float_ids("&filter=nearest&back=back.exr&data_channels=none"));
 }
 
 TEST_F(Channels, AreNamedWhereTheyAreNotKnown) {

@@ -13,7 +13,7 @@ namespace anamorph {
 
 /// The number of texels on each side of the one that a point falls into that may be read.
 constexpr int support_of(simd::Kernel kernel) {
-    return kernel == simd::Kernel::bicubic ? 2 : kernel == simd::Kernel::bilinear ? 1 : 0;
+    return simd::is_cubic(kernel) ? 2 : kernel == simd::Kernel::bilinear ? 1 : 0;
 }
 
 /// Reads level 0 of a source; one per thread. Keeps references to its arguments.

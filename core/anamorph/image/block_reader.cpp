@@ -994,6 +994,7 @@ BlockReader::Filtering BlockReader::filtering(const Jacobian& steps) const {
     const Jacobian jacobian = m_filter == Filter::pyramid ? covering_rectangle(steps) : steps;
     if (m_filter == Filter::nearest) f.kernel = simd::Kernel::nearest;
     if (m_filter == Filter::bicubic) f.kernel = simd::Kernel::bicubic;
+    if (m_filter == Filter::bicubic_clamped) f.kernel = simd::Kernel::bicubic_clamped;
     if (!averages(m_filter)) return f;
     const Footprint footprint = m_chooser(jacobian);
     f.level = footprint.level;

@@ -165,7 +165,7 @@ HWY_INLINE void CubicWeights(float f, float* w) {
     w[3] = -0.5f * g * f * f;
 }
 
-template <class T>
+template <class T, bool kClamps>
 HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const Quad d;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
@@ -180,12 +180,22 @@ HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RES
         for (int c = 0; c < s.channels; c += kQuad) {
             const T* texel = origin + p.offset[i] + c - row - s.channels;
             auto sum = hn::Zero(d);
+            [[maybe_unused]] auto least = LoadQuad(texel), most = least;
             for (int j = 0; j < 4; ++j) {
                 auto line = hn::Zero(d);
-                for (int k = 0; k < 4; ++k)
-                    line = hn::MulAdd(hn::Set(d, wx[k]), LoadQuad(texel + j * row + k * s.channels), line);
+                for (int k = 0; k < 4; ++k) {
+                    const auto value = LoadQuad(texel + j * row + k * s.channels);
+                    line = hn::MulAdd(hn::Set(d, wx[k]), value, line);
+                    if constexpr (kClamps) {
+                        least = hn::Min(least, value);
+                        most = hn::Max(most, value);
+                    }
+                }
                 sum = hn::MulAdd(hn::Set(d, wy[j]), line, sum);
             }
+            // What is not finite is mended, and clamped then.
+            if constexpr (kClamps)
+                sum = hn::IfThenElse(hn::IsFinite(sum), hn::Min(hn::Max(sum, least), most), sum);
             hn::StoreU(sum, d, out + i * s.channels + c);
         }
     }
@@ -205,7 +215,7 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
 /// Weights of the texels about a fraction, of the kernel's, moved to the middle of one that is so near.
 HWY_INLINE void KernelWeights(Kernel kernel, float f, float* w) {
     f = f < kSameTexel ? 0 : f > 1 - kSameTexel ? 1 : f;
-    if (kernel == Kernel::bicubic) return CubicWeights(f, w);
+    if (is_cubic(kernel)) return CubicWeights(f, w);
     w[0] = 1 - f;
     w[1] = f;
 }
@@ -220,8 +230,7 @@ HWY_INLINE bool TapsLieTogether(const Texels& s) {
 
 /// The channels of a row that came out infinite or as no numbers, again, as weightless.h says.
 void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
-    const int bytes = size_of(s.type), count = at.count * s.channels,
-              side = s.kernel == Kernel::bicubic ? 4 : 2;
+    const int bytes = size_of(s.type), count = at.count * s.channels, side = is_cubic(s.kernel) ? 4 : 2;
     const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * bytes;
     const auto row = static_cast<int32_t>(s.row_stride / bytes);
     std::vector<double> sum(static_cast<size_t>(count));
@@ -235,17 +244,21 @@ void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
             KernelWeights(s.kernel, p.fx[i], wx);
             KernelWeights(s.kernel, p.fy[i], wy);
             const std::byte* first = s.texels + std::ptrdiff_t{p.offset[i]} * bytes;
-            if (s.kernel == Kernel::bicubic) first -= s.row_stride + pixel;
+            if (is_cubic(s.kernel)) first -= s.row_stride + pixel;
             for (int c = 0; c < s.channels; ++c) {
                 const int k = i * s.channels + c;
                 if (std::isfinite(out[k])) continue;
+                double& value = sum[static_cast<size_t>(k)];
+                TapRange range;
                 for (int j = 0; j < side; ++j)
                     for (int n = 0; n < side; ++n) {
                         const double weight = double{wy[j]} * double{wx[n]};
                         const std::byte* texel = first + j * s.row_stride + n * pixel + c * bytes;
-                        if (weight != 0)
-                            sum[static_cast<size_t>(k)] += weight * double{load_channel(texel, s.type)};
+                        const double level{load_channel(texel, s.type)};
+                        if (weight != 0) value += weight * level;
+                        range.add(level, weight);
                     }
+                if (s.kernel == Kernel::bicubic_clamped) value = range.clamped(value);
             }
         }
     }
@@ -274,7 +287,7 @@ HWY_INLINE void MendRow(const Drawing& to, int row, float* values) {
 template <class T>
 HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
     const auto row = static_cast<int32_t>(s.row_stride / static_cast<ptrdiff_t>(sizeof(T)));
-    const int side = s.kernel == Kernel::bicubic ? 4 : s.kernel == Kernel::bilinear ? 2 : 1;
+    const int side = is_cubic(s.kernel) ? 4 : s.kernel == Kernel::bilinear ? 2 : 1;
     const float shift = 0.5f * static_cast<float>(side - 1);
     // Where texels lie together those farther up came with an earlier row of pixels.
     const int first = s.apart ? 0 : HWY_MAX(0, side - 2);
@@ -288,7 +301,8 @@ HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
 template <class T>
 void SampleTyped(const Texels& s, const Offsets& at, float* out) {
     if (s.kernel == Kernel::nearest) return SampleNearest<T>(s, at, out);
-    if (s.kernel == Kernel::bicubic) return SampleBicubic<T>(s, at, out);
+    if (s.kernel == Kernel::bicubic) return SampleBicubic<T, false>(s, at, out);
+    if (s.kernel == Kernel::bicubic_clamped) return SampleBicubic<T, true>(s, at, out);
     const auto with = [&](auto channels) {
         constexpr int k = decltype(channels)::value;
         if (s.tap_count == 1)

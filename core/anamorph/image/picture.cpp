@@ -8,6 +8,7 @@
 #include <string>
 
 #include "anamorph/image/block_reader.h"
+#include "anamorph/image/coverage_source.h"
 #include "anamorph/image/map_rows.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/strips.h"
@@ -20,40 +21,6 @@ using Sources = std::vector<const Source*>;
 std::string text_of(const Size& size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
-
-/// What a source covers: 1 wherever it has texels, and on coarser levels as much as of a texel is not beyond its edges. Keeps a
-/// reference to it.
-class CoverageSource final : public Source {
-  public:
-    explicit CoverageSource(const Source& of) : m_of(of) {}
-    PixelType type() const noexcept override { return PixelType::float32; }
-    int channels() const noexcept override { return 1; }
-    int levels() const noexcept override { return m_of.levels(); }
-    Size size(int level) const noexcept override { return m_of.size(level); }
-    Box extent(int level) const noexcept override { return m_of.extent(level); }
-    bool read(int level, const Box& box, std::byte* texels,
-              std::ptrdiff_t row_stride) const noexcept override {
-        const Size finest = size(0), here = size(level);
-        const Box all = extent(0);
-        for (int y = box.y0; y < box.y1; ++y) {
-            auto* const row = reinterpret_cast<float*>(texels + (y - box.y0) * row_stride);
-            const double down = part_of_texel(y, all.y0, all.y1, finest.height, here.height);
-            for (int x = box.x0; x < box.x1; ++x)
-                row[x - box.x0] =
-                    static_cast<float>(down * part_of_texel(x, all.x0, all.x1, finest.width, here.width));
-        }
-        return true;
-    }
-
-  private:
-    /// How much of a texel of a level with `side` texels lies between two edges of the finest one.
-    static double part_of_texel(int at, int first, int last, int finest, int side) noexcept {
-        const double scale = static_cast<double>(side) / finest;
-        return std::clamp(std::min(at + 1.0, last * scale) - std::max<double>(at, first * scale), 0.0, 1.0);
-    }
-
-    const Source& m_of;
-};
 
 /// A source has the size that the map was made for, and the channels of `first`, if there is one.
 void check_source(const std::string& name, const Source* source, const Chart& chart, const Source* first) {
@@ -152,6 +119,8 @@ class Painter {
         const auto size = static_cast<std::size_t>(box.width() * box.height() * channels);
         const std::unique_ptr<float[]> values(new float[size + 16]);
         const PixelRows pixels{box, channels, values.get()};
+        m_greatest.clear();
+        if (m_picture.chooses) m_greatest.resize(static_cast<std::size_t>(box.width() * box.height()));
         bool first = true;
         for (const Picture::Map& map : m_picture.maps) {
             if (m_picture.shows_color())
@@ -188,25 +157,45 @@ class Painter {
         for (const Picture::Layer& layer : map.layers)
             readers.emplace_back(*map.blocks, source_of(layer), layer.border, m_picture.filter);
         std::vector<float> weights;
-        each_block(*map.blocks, pixels.box,
-                   [&](const Block& block, std::size_t k, const BlockPoints& points, const Box& part) {
-                       const Picture::Layer& layer = map.layers[k];
-                       const bool starts = first && k == 0;
-                       if (!starts && block.kind == Block::Kind::outside) return;
-                       if (layer.weights) {
-                           weights.resize(static_cast<std::size_t>(part.width() * part.height()));
-                           if (!layer.weights(part, weights.data()) && !starts) return;
-                       }
-                       const auto row = [&](int x, int y, int count, const float* values, float one) {
-                           const auto weight = static_cast<float>(layer.weight / double{one});
-                           const std::ptrdiff_t at = std::ptrdiff_t{y - part.y0} * part.width() + x - part.x0;
-                           const float* each = layer.weights ? weights.data() + at : nullptr;
-                           add_row(pixels.at(x, y), count, values, weight, each, starts);
-                       };
-                       const bool done = points.x ? readers[k].rows(block, points, part, row)
-                                                  : readers[k].rows(block, part, row);
-                       if (!done) m_ok = false;
-                   });
+        each_block(
+            *map.blocks, pixels.box,
+            [&](const Block& block, std::size_t k, const BlockPoints& points, const Box& part) {
+                const Picture::Layer& layer = map.layers[k];
+                const bool starts = first && k == 0;
+                if (!starts && !m_picture.chooses && block.kind == Block::Kind::outside) return;
+                if (layer.weights) {
+                    weights.resize(static_cast<std::size_t>(part.width() * part.height()));
+                    if (!layer.weights(part, weights.data()) && !starts) return;
+                }
+                const auto row = [&](int x, int y, int count, const float* values, float one) {
+                    const auto weight = static_cast<float>(layer.weight / double{one});
+                    const std::ptrdiff_t at = std::ptrdiff_t{y - part.y0} * part.width() + x - part.x0;
+                    const float* each = layer.weights ? weights.data() + at : nullptr;
+                    if (m_picture.chooses)
+                        return choose_row(pixels, x, y, count, values, one, layer.weight, each, starts);
+                    add_row(pixels.at(x, y), count, values, weight, each, starts);
+                };
+                const bool done =
+                    points.x ? readers[k].rows(block, points, part, row) : readers[k].rows(block, part, row);
+                if (!done) m_ok = false;
+            });
+    }
+
+    /// Puts a row of pixels there where its weight, `weight` times what `each` says of one, is the greatest so far. Bits stay
+    /// what they are where 1 stands for 1.
+    void choose_row(const PixelRows& to, int x, int y, int count, const float* values, float one,
+                    double weight, const float* each, bool first) {
+        const int channels = to.channels;
+        const Box& box = to.box;
+        float* pixel = to.at(x, y);
+        double* greatest = m_greatest.data() + std::ptrdiff_t{y - box.y0} * box.width() + x - box.x0;
+        for (int i = 0; i < count; ++i, pixel += channels, values += channels, ++greatest) {
+            const double own = each ? weight * double{each[i]} : weight;
+            if (!first && !(own > *greatest)) continue;
+            *greatest = own;
+            std::copy_n(values, channels, pixel);
+            for (int c = 0; one != 1 && c < channels; ++c) pixel[c] /= one;
+        }
     }
 
     /// Adds a row of pixels, `weight` times, and so often again as `each` says of one, if it is given. Colour is mixed as
@@ -235,7 +224,7 @@ class Painter {
 
     void finish_color(const PixelRows& pixels) const {
         const Box& box = pixels.box;
-        for (int y = box.y0; m_alpha >= 0 && y < box.y1; ++y)
+        for (int y = box.y0; m_alpha >= 0 && !m_picture.chooses && y < box.y1; ++y)
             for (int x = box.x0; x < box.x1; ++x)
                 unassociate_alpha(pixels.at(x, y), pixels.channels, m_alpha);
         if (m_picture.overlay) m_picture.overlay(pixels);
@@ -259,6 +248,7 @@ class Painter {
     const Sources& m_sources;
     const Canvas& m_canvas;
     int m_alpha;
+    std::vector<double> m_greatest;  ///< the greatest weights so far, where layers are chosen
     bool m_ok = true;
 };
 
@@ -322,6 +312,7 @@ Picture Picture::of_coverage() const {
     coverage.output = Output::color;
     coverage.adds_alpha = false;
     coverage.overlay = {};
+    coverage.data = {};
     coverage.same_as = {};
     for (Map& map : coverage.maps)
         for (Layer& layer : map.layers)
@@ -329,6 +320,16 @@ Picture Picture::of_coverage() const {
             if (layer.border.wrap() != Wrap::black)
                 layer.border = Border(layer.border.chart(), Wrap::automatic);
     return coverage;
+}
+
+Picture Picture::of_data() const {
+    Picture of_data = *this;
+    of_data.filter = data.filter;
+    of_data.data = {};
+    of_data.chooses = true;
+    of_data.adds_alpha = false;
+    of_data.overlay = {};
+    return of_data;
 }
 
 bool Picture::draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
@@ -353,13 +354,13 @@ bool Picture::draw_channels(const std::vector<const Source*>& sources, const Box
                             const ParallelFor& parallel_for) const {
     if (!draw_pixels(sources, box, view, parallel_for)) return false;
     const bool is_mixed = maps.size() > 1 || maps.front().layers.size() > 1;
-    if (data.channels.empty() || data.filter == filter || !shows_color() || is_mixed) return true;
-    Picture of_data = *this;
-    of_data.filter = data.filter;
+    if (data.channels.empty() || !shows_color() || (data.filter == filter && !is_mixed && !overlay))
+        return true;
+    const Picture own = of_data();
     const std::ptrdiff_t channel = size_of(view.type), pixel = view.channels * channel;
     std::vector<std::byte> drawn(static_cast<std::size_t>(pixel * box.width() * box.height()));
     const ImageView from = packed_view(drawn.data(), view.type, box.width(), box.height(), view.channels);
-    if (!of_data.draw_pixels(sources, box, from, parallel_for)) return false;
+    if (!own.draw_pixels(sources, box, from, parallel_for)) return false;
     for (int y = 0; y < box.height(); ++y)
         for (int x = 0; x < box.width(); ++x)
             for (const int c : data.channels)

@@ -84,12 +84,14 @@ struct Picture {
     /// target. ST-maps need a single layer.
     std::vector<Map> maps;
     Filter filter = Filter::antialias;
-    /// Channels of the sources that hold no colour, and the filter they are read by: ids have no mean. Where several sources or
-    /// maps are mixed, all channels are.
+    /// Channels of the sources that hold no colour, and the filter they are read by: ids have no mean. Where layers are mixed,
+    /// those of a pixel are of the layer that has the greatest weight there, of equal ones of the first.
     DataChannels data = {};
     Output output = Output::color;
     /// Has colour one channel more than the sources, the last: their coverage?
     bool adds_alpha = false;
+    /// Does a pixel show the layer that has the greatest weight there, of equal ones the first, in place of the mean?
+    bool chooses = false;
     /// A function of each pixel's centre that the picture shows, in one channel, in place of `output`, where
     /// it is given.
     std::function<float(double x, double y)> value;
@@ -109,6 +111,9 @@ struct Picture {
 
     int width() const { return maps.front().blocks->width(); }
     int height() const { return maps.front().blocks->height(); }
+
+    /// The picture of which `data` shows channels: by the filter of these, chosen and not mixed, with nothing drawn over it.
+    Picture of_data() const;
 
     /// Is what is drawn made of the sources' colours?
     bool shows_color() const { return !value && output == Output::color; }

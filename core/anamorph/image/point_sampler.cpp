@@ -25,7 +25,8 @@ Taps taps_at(Filter filter, double at, float same) {
     const double floor = std::floor(at - 0.5), past = at - 0.5 - floor;
     const double t = past < same ? 0 : past > 1 - same ? 1 : past;
     const int below = static_cast<int>(floor);
-    if (filter == Filter::bicubic) return {below - 1, 4, catmull_rom_weights(t)};
+    if (filter == Filter::bicubic || filter == Filter::bicubic_clamped)
+        return {below - 1, 4, catmull_rom_weights(t)};
     const auto [first, second] = bilinear_weights(t);
     return {below, 2, {first, second}};
 }
@@ -54,9 +55,10 @@ Box box_of_taps(const Footprint& footprint, const TapAt& tap_at) {
     return {first.x0, first.y0, last.x1, last.y1};
 }
 
-/// The sums of texels within a window, channel by channel; `texels` has room for four.
-void weigh(const Window& window, const Taps& across, const Taps& down, std::vector<float>& texels,
-           std::vector<double>& sums) {
+/// The sums of texels within a window, channel by channel; `texels` has room for four. They are clamped to the range of the
+/// texels where that is asked for.
+void weigh(const Window& window, const Taps& across, const Taps& down, bool clamps,
+           std::vector<float>& texels, std::vector<double>& sums) {
     const std::size_t channels = sums.size();
     const std::ptrdiff_t size = size_of(window.type);
     const std::byte* const first = window.texels + (down.first - window.box.y0) * window.row_stride +
@@ -71,6 +73,18 @@ void weigh(const Window& window, const Taps& across, const Taps& down, std::vect
             for (std::size_t c = 0; c < channels; ++c)
                 sums[c] += weight * static_cast<double>(texels[i * channels + c]);
         }
+    }
+    if (!clamps) return;
+    for (std::size_t c = 0; c < channels; ++c) {
+        TapRange range;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(down.count); ++j)
+            for (std::size_t i = 0; i < static_cast<std::size_t>(across.count); ++i)
+                range.add(static_cast<double>(
+                              load_channel(first + static_cast<std::ptrdiff_t>(j) * window.row_stride +
+                                               static_cast<std::ptrdiff_t>(i * channels + c) * size,
+                                           window.type)),
+                          across.weight[i] * down.weight[j]);
+        sums[c] = range.clamped(sums[c]);
     }
 }
 
@@ -104,10 +118,12 @@ void PointSampler::sample(Filter filter, const Window& window, double x, double 
         load_channels(window.texels, window.type, channels, pixel);
         return;
     }
-    weigh(window, across, down, m_texels, m_values);
+    const bool clamps = filter == Filter::bicubic_clamped;
+    weigh(window, across, down, clamps, m_texels, m_values);
     const auto is_finite = [](double value) { return std::isfinite(value); };
     if (!std::all_of(m_values.begin(), m_values.end(), is_finite)) {
-        weigh(window, taps_at(filter, x, kSameTexel), taps_at(filter, y, kSameTexel), m_texels, m_mended);
+        weigh(window, taps_at(filter, x, kSameTexel), taps_at(filter, y, kSameTexel), clamps, m_texels,
+              m_mended);
         for (std::size_t c = 0; c < m_values.size(); ++c)
             if (!is_finite(m_values[c])) m_values[c] = m_mended[c];
     }

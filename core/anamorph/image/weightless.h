@@ -5,6 +5,10 @@
 // infinite or as no number is computed again texel by texel, and those of weight 0 are left out. What is finite keeps its bits.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace anamorph {
 
 /// The distance from the middle of a texel, either way, below which a point counts as there for a channel
@@ -18,5 +22,24 @@ inline constexpr float kSameTexel = 0x1p-15f;
 /// that (footprint.h), which two taps d apart have where d^2 / 2 is as much: each is d / 2 < 2^-8 from the
 /// middle.
 inline constexpr float kSameTap = 0x1p-8f;
+
+/// The least and the greatest of the taps of a filter, between which a clamped one stays. A tap that is infinite, or no number,
+/// counts where it has weight.
+class TapRange {
+  public:
+    void add(double tap, double weight) {
+        if (weight == 0 && !std::isfinite(tap)) return;
+        m_least = std::min(m_least, tap);
+        m_most = std::max(m_most, tap);
+    }
+    /// What is not finite stays what it is.
+    double clamped(double value) const {
+        return std::isfinite(value) ? std::min(std::max(value, m_least), m_most) : value;
+    }
+
+  private:
+    double m_least = std::numeric_limits<double>::infinity(),
+           m_most = -std::numeric_limits<double>::infinity();
+};
 
 }  // namespace anamorph

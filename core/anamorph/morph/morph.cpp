@@ -144,6 +144,7 @@ Picture morphed_picture(const std::shared_ptr<const Features>& features, const s
     Picture picture;
     picture.maps = maps_of(map, color, options);
     picture.filter = options.filter;
+    picture.data = options.data;
     picture.output = options.output;
     picture.adds_alpha = options.adds_alpha;
     picture.overscan = options.overscan;

@@ -23,6 +23,7 @@ struct MorphOptions {
     MorphScheme scheme = MorphScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double
     Filter filter = Filter::antialias;
+    DataChannels data = {};       ///< channels that are not blended (Picture::data)
     Wrap wrap = Wrap::automatic;  ///< automatic is clamp: a morph has no edges of its own
     Output output = Output::color;
     /// One picture alone, warped, in place of the blend: 0 is the first. An ST-map is of one alone, the first

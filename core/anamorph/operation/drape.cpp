@@ -72,6 +72,9 @@ ParameterTable accuracy_rows() {
                  "from a pyramid (Oka 1987, Williams 1983)"},
                 {"summed_area", Filter::summed_area,
                  "the same of all texels, from a table of sums (Crow 1984)"}}),
+        clamp(),
+        data_channels(),
+        data_filter(),
         wrap("goes on as at the edge"),
         number("tol", "pixels", surface::kDrapeTolRow,
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),
@@ -184,7 +187,7 @@ surface::DrapeOptions options_of(const ParameterValues& values) {
     options.block = values.number("block");
     options.overlap = values.number("overlap");
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter");
+    options.filter = rows::filter_of(values);
     options.wrap = chosen<Wrap>(values, "wrap");
     if (options.wrap == Wrap::automatic) options.wrap = Wrap::clamp;
     options.output = rows::chosen_output(values);
@@ -276,6 +279,7 @@ class DrapeRequest {
           m_source(input.sources[0].size()),
           m_has_backdrop(input.sources.size() > 1),
           m_has_back(input.values.given("back")),
+          m_facts(input.sources[0].facts),
           m_alpha(input.sources[0].alpha),
           m_backdrop_alpha(input.sources.size() > 1 ? input.sources[1].alpha : -1),
           m_surfaces(std::make_shared<DrapeSurfaces>(input, aspect())) {
@@ -297,10 +301,22 @@ class DrapeRequest {
     Size target(const ParameterValues& values) const { return rows::size_of(values, m_source); }
     surface::DrapeOptions options(const ParameterValues& values) const {
         surface::DrapeOptions options = options_of(values);
+        data(values, options.filter);
         options.alpha = m_alpha;
         options.backdrop_alpha = m_backdrop_alpha;
         options.overscan = rows::overscan_of(values, target(values));
         return options;
+    }
+    /// Channels that hold no colour. Where all do, `filter` becomes theirs.
+    DataChannels data(const ParameterValues& values, Filter& filter) const {
+        return rows::data_of(values, m_facts, filter);
+    }
+    DataChannels data(const ParameterValues& values) const {
+        Filter filter = Filter::nearest;
+        return data(values, filter);
+    }
+    bool has_behind(const ParameterValues& values) const {
+        return m_has_backdrop || values.given("background");
     }
     const std::string& missing() const { return m_surfaces->missing(); }
 
@@ -344,6 +360,7 @@ class DrapeRequest {
             machine(values);
             rows::check_overscan(values);
             adds_alpha(values);
+            data(values);
         } catch (const Error& error) {
             if (!m_sequence.has_keys()) throw;
             throw Error("frame " + std::to_string(frame) + ": " + error.what());
@@ -353,6 +370,7 @@ class DrapeRequest {
     Sequence m_sequence;
     Size m_source;
     bool m_has_backdrop, m_has_back;
+    SourceFacts m_facts;
     int m_alpha, m_backdrop_alpha;
     std::shared_ptr<const DrapeSurfaces> m_surfaces;
 };
@@ -362,25 +380,75 @@ PixelKind pixels_of(const surface::DrapeOptions& options) {
     return options.own == surface::DrapeOutput::normal ? PixelKind::vector : PixelKind::value;
 }
 
+/// Copies channels from one picture to another of the same size and type, at the pixels that `is_there` says.
+template <class IsThere>
+void copy_channels(const std::vector<int>& channels, const ImageView& from, const ImageView& to,
+                   const IsThere& is_there) {
+    const std::ptrdiff_t size = size_of(to.type);
+    for (int y = 0; y < to.height; ++y)
+        for (int x = 0; x < to.width; ++x)
+            for (const int c : channels)
+                if (is_there(x, y)) std::copy_n(from.at(x, y) + c * size, size, to.at(x, y) + c * size);
+}
+
+/// The drapes that a picture is made of.
+struct DrapeParts {
+    surface::Drape color;
+    std::optional<surface::Drape> coverage = {};  ///< drawn to the last channel
+    /// Channels that hold no colour are those of the side that is seen in a pixel's middle, neither lit nor mixed; where none is,
+    /// those of what is behind, if there is anything.
+    std::vector<int> data = {};
+    std::optional<surface::Drape> bare = {}, behind = {}, seen = {};
+};
+
+DrapeParts parts_of(const DrapeRequest& request, const ParameterValues& values, const Size& size,
+                    bool adds_alpha) {
+    const surface::DrapeOptions options = request.options(values);
+    const auto drape = [&](const surface::DrapeOptions& of) { return request.drape(values, size, of); };
+    const auto value_of = [&](surface::DrapeOutput output) {
+        surface::DrapeOptions of_value = options;
+        of_value.own = output;
+        return drape(of_value);
+    };
+    DrapeParts parts{drape(options)};
+    if (adds_alpha) parts.coverage.emplace(value_of(surface::DrapeOutput::coverage));
+    const DataChannels data = request.data(values);
+    if (pixels_of(options) != PixelKind::color || data.channels.empty()) return parts;
+    parts.data = data.channels;
+    surface::DrapeOptions of_data = options;
+    of_data.filter = data.filter;
+    of_data.lighting.shading = surface::DrapeShading::none;
+    if (request.has_behind(values)) {
+        parts.behind.emplace(drape(of_data));
+        parts.seen.emplace(value_of(surface::DrapeOutput::seen));
+    }
+    of_data.background.clear();
+    parts.bare.emplace(drape(of_data));
+    return parts;
+}
+
 /// A drape of the first source.
 class SolvedDrape final : public SolvedPicture {
   public:
-    /// `request` says which sources there are. `coverage`: what is drawn to the last channel.
-    SolvedDrape(const DrapeRequest& request, surface::Drape drape,
-                std::optional<surface::Drape> coverage = {})
-        : m_drape(std::move(drape)),
-          m_coverage(std::move(coverage)),
-          m_has_backdrop(request.has_backdrop()),
-          m_has_back(request.has_back()) {}
+    /// `request` says which sources there are.
+    SolvedDrape(const DrapeRequest& request, DrapeParts parts)
+        : SolvedDrape(std::move(parts), request.has_backdrop(), request.has_back()) {}
+    SolvedDrape(DrapeParts parts, bool has_backdrop, bool has_back)
+        : m_parts(std::move(parts)), m_has_backdrop(has_backdrop), m_has_back(has_back) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
-        const Reached reached = m_drape.reached(parallel_for);
+        const surface::Drape& drape = m_parts.color;
+        const Reached reached = drape.reached(parallel_for);
         Attributes all = {{"anamorph:max_error", reached.max_error},
                           {"anamorph:exact_fraction", reached.exact_fraction},
-                          {"anamorph:patches", static_cast<int>(m_drape.patches())}};
-        if (const std::optional<int> holes = m_drape.holes(parallel_for))
+                          {"anamorph:patches", static_cast<int>(drape.patches())}};
+        if (const std::optional<int> holes = drape.holes(parallel_for))
             all.push_back({"anamorph:holes", *holes});
         return all;
+    }
+    std::unique_ptr<const SolvedPicture> of_moved() const override {
+        if (!m_parts.bare || m_parts.behind) return nullptr;
+        return std::make_unique<SolvedDrape>(DrapeParts{*m_parts.bare}, m_has_backdrop, m_has_back);
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
@@ -390,15 +458,40 @@ class SolvedDrape final : public SolvedPicture {
         };
         const Source *const backdrop = given(m_has_backdrop, 1), *const back = given(m_has_back,
                                                                                      m_has_backdrop ? 2 : 1);
-        if (!m_coverage) return m_drape.draw(source, box, view, parallel_for, backdrop, back);
-        const int last = view.channels - 1;
-        const bool ok = m_drape.draw(source, box, channels_of(view, 0, last), parallel_for, nullptr, back);
-        return m_coverage->draw(nullptr, box, channels_of(view, last, 1), parallel_for) && ok;
+        const int colors = view.channels - (m_parts.coverage ? 1 : 0);
+        const ImageView of_colors = channels_of(view, 0, colors);
+        bool ok = m_parts.color.draw(source, box, of_colors, parallel_for, backdrop, back);
+        if (m_parts.bare) ok = draw_data(source, backdrop, back, box, of_colors, parallel_for) && ok;
+        if (m_parts.coverage)
+            ok = m_parts.coverage->draw(nullptr, box, channels_of(view, colors, 1), parallel_for) && ok;
+        return ok;
     }
 
   private:
-    surface::Drape m_drape;
-    std::optional<surface::Drape> m_coverage;
+    bool draw_data(const Source* source, const Source* backdrop, const Source* back, const Box& box,
+                   const ImageView& to, const ParallelFor& parallel_for) const {
+        const auto pixels = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
+        std::vector<std::byte> drawn(pixels * static_cast<std::size_t>(to.channels * size_of(to.type)));
+        const ImageView from = packed_view(drawn.data(), to.type, box.width(), box.height(), to.channels);
+        bool ok = true;
+        std::vector<float> seen(pixels, 1.0f);
+        if (m_parts.behind) {
+            ok = m_parts.behind->draw(source, box, from, parallel_for, backdrop, back);
+            copy_channels(m_parts.data, from, to, [](int, int) { return true; });
+            m_parts.seen->draw(nullptr, box,
+                               packed_view(reinterpret_cast<std::byte*>(seen.data()), PixelType::float32,
+                                           box.width(), box.height(), 1),
+                               parallel_for);
+        }
+        ok = m_parts.bare->draw(source, box, from, parallel_for, nullptr, back) && ok;
+        copy_channels(m_parts.data, from, to, [&](int x, int y) {
+            return seen[static_cast<std::size_t>(y) * static_cast<std::size_t>(box.width()) +
+                        static_cast<std::size_t>(x)] != 0;
+        });
+        return ok;
+    }
+
+    DrapeParts m_parts;
     bool m_has_backdrop, m_has_back;
 };
 
@@ -415,6 +508,7 @@ class SolvedByBlocks final : public SolvedPicture {
         if (options.output == Output::color && options.own == surface::DrapeOutput::shared)
             m_pixels.emplace(m_map, *request.machine(values), Border(flat, options.wrap), options.filter);
         m_picture = picture_through(m_map, Border(flat, options.wrap), options.filter, options.output);
+        m_picture.data = request.data(values);
         if (options.output == Output::error)
             m_picture.value = [map = m_map.get()](double x, double y) {
                 return static_cast<float>(
@@ -438,6 +532,9 @@ class SolvedByBlocks final : public SolvedPicture {
               const ParallelFor& parallel_for) const override {
         if (m_pixels) return m_pixels->draw(sources[0], box, view, parallel_for);
         return m_picture.draw(sources[0], box, view, parallel_for);
+    }
+    std::unique_ptr<const SolvedPicture> of_moved() const override {
+        return moved_channels(m_picture.data).empty() ? nullptr : solved(m_picture.of_data());
     }
 
   private:
@@ -470,19 +567,15 @@ class Drapes final : public Pictures {
                            options.background.empty() && !m_request->has_backdrop() && !m_request->has_back();
         if (picture.pixels == PixelKind::color && options.filter == Filter::nearest && plain)
             picture.moves = 0;
+        if (picture.pixels == PixelKind::color && !m_request->has_behind(values) && !m_request->has_back())
+            picture.moved_channels = moved_channels(m_request->data(values));
         if (m_request->is_film()) picture.says.push_back({"anamorph:frame", number});
         if (!m_request->missing().empty()) picture.says.push_back({"anamorph:missing", m_request->missing()});
         picture.adds_alpha = picture.pixels == PixelKind::color && m_request->adds_alpha(values);
         picture.solve = [request = m_request, values, adds_alpha = picture.adds_alpha,
                          size = *size]() -> std::unique_ptr<const SolvedPicture> {
             if (request->machine(values)) return std::make_unique<SolvedByBlocks>(*request, values, size);
-            surface::DrapeOptions of_picture = request->options(values);
-            if (!adds_alpha)
-                return std::make_unique<SolvedDrape>(*request, request->drape(values, size, of_picture));
-            surface::DrapeOptions of_coverage = of_picture;
-            of_coverage.own = surface::DrapeOutput::coverage;
-            return std::make_unique<SolvedDrape>(*request, request->drape(values, size, of_picture),
-                                                 request->drape(values, size, of_coverage));
+            return std::make_unique<SolvedDrape>(*request, parts_of(*request, values, size, adds_alpha));
         };
         return picture;
     }

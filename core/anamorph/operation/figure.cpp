@@ -47,10 +47,16 @@ Parameter texture_filter() {
     return row;
 }
 
+Parameter texture_clamp() {
+    Parameter row = rows::clamp();
+    row.documentation = "of style textured: " + row.documentation;
+    return row;
+}
+
 void read_filter(const ParameterValues& values, figure::FigureLook& look) {
     const bool own = std::any_of(averages().begin(), averages().end(),
                                  [&](const rows::Word& word) { return word.name == values.text("filter"); });
-    look.filter = own ? Filter::antialias : rows::chosen<Filter>(values, "filter");
+    look.filter = own ? Filter::antialias : rows::filter_of(values);
     look.average =
         own ? rows::chosen<figure::TextureAverage>(values, "filter") : figure::TextureAverage::footprint;
 }
@@ -154,6 +160,7 @@ ParameterTable line_rows() {
             "the back; mirrored, over the front and again over the back; linear, stripes stay straight; "
             "octahedral, without a pole"),
         texture_filter(),
+        texture_clamp(),
     };
 }
 

@@ -44,6 +44,7 @@ class FlatPictures final : public Pictures {
             for (const Attribute& attribute : *m_request.says) picture.says.push_back(copy_of(attribute));
         picture.adds_alpha = m_request.adds_alpha;
         if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
+        if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(m_request.data);
         picture.solve = [request = m_request, make_map = m_make_map, size = *size] {
             return solved(flat_picture(request, make_map(size)));
         };
@@ -68,7 +69,7 @@ FlatRequest flat_request(const ParameterValues& values, const SourceFacts& sourc
     FlatRequest r{Chart(Projection::rectilinear, source.width, source.height),
                   target,
                   {},
-                  rows::chosen<Filter>(values, "filter"),
+                  rows::filter_of(values),
                   rows::chosen<Wrap>(values, "wrap"),
                   rows::chosen_output(values)};
     r.plan.scheme = rows::chosen<Scheme>(values, "scheme");

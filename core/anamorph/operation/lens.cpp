@@ -44,6 +44,7 @@ ParameterTable make_lens_table() {
         tile(),
         mip(),
         filter(),
+        clamp(),
         data_channels(),
         data_filter(),
         wrap("is black"),

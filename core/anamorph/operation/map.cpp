@@ -35,6 +35,7 @@ ParameterTable make_map_table() {
         tile(),
         mip(),
         filter(),
+        clamp(),
         data_channels(),
         data_filter(),
         wrap("is black"),

@@ -54,6 +54,9 @@ ParameterTable make_morph_table() {
         tile(),
         mip(),
         filter(),
+        clamp(),
+        data_channels(),
+        data_filter(),
         wrap("is clamp"),
         tol(),
         scheme({{"auto", MorphScheme::automatic}, {"exact", MorphScheme::exact}}),
@@ -106,7 +109,7 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
     options.overscan = rows::overscan_of(values, size);
     options.scheme = chosen<MorphScheme>(values, "scheme");
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter");
+    options.filter = rows::filter_of(values);
     options.wrap = chosen<Wrap>(values, "wrap");
     read_output(values, pictures.size(), options);
     options.t = values.number("t");
@@ -234,6 +237,7 @@ class Morphs final : public Pictures {
         // A film's frames are blends but for a few.
         if (picture.pixels == PixelKind::color && m_request.frames == 1)
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));
+        if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(options.data);
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
         if (const std::string shapes = named_shapes(*m_features); !shapes.empty())
             picture.says.push_back({"anamorph:shapes", shapes});
@@ -258,6 +262,7 @@ std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
     for (const SourceImage& image : input.sources) sizes.push_back(image.size());
     check_alike(input.sources, input.values);
     MorphRequest request = read_morph_request(input.values, sizes);
+    request.options.data = rows::data_of(input.values, input.sources[0].facts, request.options.filter);
     request.options.adds_alpha =
         rows::adds_alpha(input.values, input.sources[0].alpha >= 0, request.options.wrap == Wrap::black);
     return std::make_unique<Morphs>(request, read_features(request, input));

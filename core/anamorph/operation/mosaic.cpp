@@ -69,6 +69,9 @@ ParameterTable make_mosaic_table() {
         tile(),
         mip(),
         filter(),
+        clamp(),
+        data_channels(),
+        data_filter(),
         as_pano("wrap"),
         tol(),
         scheme({{"auto", Scheme::automatic},
@@ -146,12 +149,16 @@ Picture picture_of(const MosaicRequest& request) {
 class SolvedMosaic final : public SolvedPicture {
   public:
     explicit SolvedMosaic(const MosaicRequest& request)
-        : m_picture(solved(picture_of(request))),
-          m_circles(request.stack.circles),
-          m_height(request.panorama.height()) {}
+        : SolvedMosaic(solved(picture_of(request)), request.stack.circles, request.panorama.height()) {}
+    SolvedMosaic(std::unique_ptr<const SolvedPicture> picture, int circles, int height)
+        : m_picture(std::move(picture)), m_circles(circles), m_height(height) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         return m_picture->reached(parallel_for);
+    }
+    std::unique_ptr<const SolvedPicture> of_moved() const override {
+        std::unique_ptr<const SolvedPicture> moved = m_picture->of_moved();
+        return moved ? std::make_unique<SolvedMosaic>(std::move(moved), m_circles, m_height) : nullptr;
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
@@ -191,6 +198,7 @@ class Mosaics final : public Pictures {
         const bool single = request.circle || request.stack.circles == 1;
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest && single)
             picture.moves = 0;
+        if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(request.options.data);
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.solve = [request] { return std::make_unique<SolvedMosaic>(request); };
         return picture;

@@ -81,6 +81,9 @@ class SolvedPicture {
     virtual bool reached_by_drawing() const { return false; }
     /// The picture, where it is one of maps (image/picture.h): it may be joined with another (chain/joined.h).
     virtual const Picture* of_maps() const { return nullptr; }
+    /// The picture of the channels that are only moved (PictureRequest::moved_channels), bit for bit; what it shows in others
+    /// does not count. Null where there are none.
+    virtual std::unique_ptr<const SolvedPicture> of_moved() const { return nullptr; }
     /// Fills `view` with the pixels of `box`; sources are read for colour only. The sources are followed by
     /// linked images, null where one is missing. False when a source could not be read.
     virtual bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
@@ -103,6 +106,9 @@ struct PictureRequest {
     /// The source whose pixels the picture shows as they are, moved and never computed with: a host may have it move what
     /// the core has no numbers for.
     std::optional<std::size_t> moves = {};
+    /// Channels of colour that are only moved where others are computed with (SolvedPicture::of_moved): a host may do the same
+    /// with them.
+    std::vector<int> moved_channels = {};
     /// Has colour one channel more than the first source, the last, of alpha?
     bool adds_alpha = false;
     std::function<std::unique_ptr<const SolvedPicture>()> solve;

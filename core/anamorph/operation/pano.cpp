@@ -165,6 +165,7 @@ ParameterTable make_pano_table() {
         tile(),
         mip(),
         filter(),
+        clamp(),
         data_channels(),
         data_filter(),
         wrap("goes on across the seam, the poles and cube edges"),
@@ -500,11 +501,11 @@ Orientation read_orientation(const ParameterValues& values) {
 ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source) {
     ReprojectOptions options;
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter");
+    options.filter = rows::filter_of(values);
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
     options.source_overscan = source.overscan.has_value();
-    if (values.knows("data_filter")) options.data = rows::data_of(values, source, options.filter);
+    options.data = rows::data_of(values, source, options.filter);
     options.adds_alpha = rows::adds_alpha(values, source.has_alpha,
                                           options.wrap == Wrap::automatic || options.wrap == Wrap::black);
     return options;
@@ -617,6 +618,7 @@ class Panos final : public Pictures {
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest)
             picture.moves = 0;
+        if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(request.options.data);
         if (!request.machine) picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back(request.source.says());
         picture.solve = [request] {

@@ -283,8 +283,19 @@ std::vector<int> named_channels(const std::string& all, const SourceFacts& facts
 
 }  // namespace
 
+Parameter clamp() {
+    return toggle("clamp", "0",
+                  "1: what filter=bicubic overshoots is cut off: a channel stays between the least and the "
+                  "greatest of the 4x4 texels that are read; the other filters do not overshoot");
+}
+
+Filter filter_of(const ParameterValues& values, std::string_view name) {
+    const auto filter = chosen<Filter>(values, name);
+    return filter == Filter::bicubic && values.toggle("clamp") ? Filter::bicubic_clamped : filter;
+}
+
 DataChannels data_of(const ParameterValues& values, const SourceFacts& facts, Filter& filter) {
-    DataChannels data{facts.data_channels, chosen<Filter>(values, "data_filter")};
+    DataChannels data{facts.data_channels, filter_of(values, "data_filter")};
     if (values.given("data_channels")) data.channels = named_channels(values.text("data_channels"), facts);
     const std::set<int> different(data.channels.begin(), data.channels.end());
     // Then what is only moved keeps all its bits.

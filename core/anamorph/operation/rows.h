@@ -63,6 +63,10 @@ Parameter colorspace(const std::string& doc);
 
 /// The row of filters: those that all operations share, then the operation's own.
 Parameter filter(const std::vector<Word>& own = {});
+/// Is what a filter overshoots cut off?
+Parameter clamp();
+/// The filter that is asked for, clamped where that is too. `name`: of its row.
+Filter filter_of(const ParameterValues& values, std::string_view name = "filter");
 /// The rows of channels that hold no colour: which these are, and how they are filtered.
 Parameter data_channels();
 Parameter data_filter();

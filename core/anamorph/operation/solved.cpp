@@ -20,6 +20,9 @@ class Solved final : public SolvedPicture {
     }
     const Picture* of_maps() const override { return &m_picture; }
     bool reached_by_drawing() const override { return m_picture.reached_by_drawing; }
+    std::unique_ptr<const SolvedPicture> of_moved() const override {
+        return moved_channels(m_picture.data).empty() ? nullptr : solved(m_picture.of_data());
+    }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
         return m_picture.draw(sources, box, view, parallel_for);
@@ -43,6 +46,10 @@ PixelKind pixels_of(Output output) {
         default:
             return PixelKind::color;
     }
+}
+
+std::vector<int> moved_channels(const DataChannels& data) {
+    return data.filter == Filter::nearest ? data.channels : std::vector<int>{};
 }
 
 std::unique_ptr<const SolvedPicture> solved(Picture picture) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "anamorph/image/picture.h"
 #include "anamorph/operation/operation.h"
@@ -11,6 +12,9 @@ namespace anamorph {
 
 /// The kind of pixels of a picture that shows this output.
 PixelKind pixels_of(Output output);
+
+/// The channels of a picture that are only moved, while others may be mixed.
+std::vector<int> moved_channels(const DataChannels& data);
 
 /// A picture as an operation hands it to a host: it says anamorph:max_error, anamorph:exact_fraction, and what it says itself.
 std::unique_ptr<const SolvedPicture> solved(Picture picture);

@@ -41,6 +41,7 @@ ParameterTable make_warp_table() {
         tile(),
         mip(),
         filter(),
+        clamp(),
         data_channels(),
         data_filter(),
         wrap("is black"),
@@ -94,7 +95,7 @@ WarpRequest read_warp_request(const ParameterValues& values, const Size& source)
     request.machine = shader_of(values);
     if (!request.machine) options.scheme = chosen<WarpScheme>(values, "scheme");
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter");
+    options.filter = rows::filter_of(values);
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
     options.folds = values.text("output") == "folds";
@@ -242,6 +243,8 @@ class Warps final : public Pictures {
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
             !request.program)
             picture.moves = 0;
+        if (picture.pixels == PixelKind::color && !request.program && !request.machine)
+            picture.moved_channels = moved_channels(request.options.data);
         // Positions in pixels are pixels of the finest level.
         picture.solve = [request, level, map = m_map,
                          whole = m_request]() -> std::unique_ptr<const SolvedPicture> {

@@ -60,6 +60,7 @@ Picture mosaic_picture(const Panorama& view, const ConcentricStack& stack, const
     if (is_stmap(options.output) && !circle) circle = stack.circles / 2;
     Picture picture;
     picture.filter = options.filter;
+    picture.data = options.data;
     picture.output = options.output;
     picture.overscan = options.overscan;
     picture.adds_alpha = options.adds_alpha;
