@@ -198,6 +198,12 @@ SourceLevel Frame::level() const {
         {std::min(0, data.x0), std::min(0, data.y0), std::max(width, data.x1), std::max(height, data.y1)}};
 }
 
+double pixel_aspect_of(const ImageSpec& spec) {
+    const double aspect{spec.get_float_attribute("PixelAspectRatio", 1.0f)};
+    // What resolutions that are rounded make of square ones.
+    return std::fabs(aspect - 1) <= 1e-4 ? 1 : aspect;
+}
+
 int unassociated_alpha_of(const ImageSpec& spec) {
     return spec.get_int_attribute("oiio:UnassociatedAlpha") ? spec.alpha_channel : -1;
 }
@@ -241,10 +247,11 @@ void check_source(const ImageSpec& spec, const std::string& name) {
     check_windows(spec, image);
     const Frame frame = frame_of(spec);
     check_sides(frame.width, frame.height, image);
-    const float aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
-    if (!(std::fabs(aspect - 1) <= 1e-4f))
-        throw Error(image + " has PixelAspectRatio=" + shortest(aspect) +
-                    ": must be 1; resize it to square pixels, or correct the attribute");
+    constexpr double kMostAspect = 100;
+    const double aspect = pixel_aspect_of(spec);
+    if (!(aspect >= 1 / kMostAspect && aspect <= kMostAspect))
+        throw Error(image + " has PixelAspectRatio=" + shortest(static_cast<float>(aspect)) +
+                    ": must be from 0.01 to 100; correct the attribute");
 }
 
 std::string reason_of(std::string message, const std::string& name, const std::string& shown) {

@@ -54,6 +54,9 @@ struct Frame {
 };
 Frame frame_of(const OIIO::ImageSpec& spec);
 
+/// The width of an image's pixels over their height.
+double pixel_aspect_of(const OIIO::ImageSpec& spec);
+
 /// The channel by which a picture's colour is not yet multiplied, or -1.
 int unassociated_alpha_of(const OIIO::ImageSpec& spec);
 
@@ -61,7 +64,7 @@ int unassociated_alpha_of(const OIIO::ImageSpec& spec);
 /// `image`: what messages call it.
 void check_windows(const OIIO::ImageSpec& spec, const std::string& image);
 
-/// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels that are not square.
+/// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels of no shape.
 void check_source(const OIIO::ImageSpec& spec, const std::string& name);
 
 /// The reason that OpenImageIO gives for a failure, fit for a message about the file that was opened as

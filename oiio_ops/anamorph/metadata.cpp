@@ -159,6 +159,8 @@ void read_photo_sphere(const ImageSpec& spec, SourceFacts& facts) {
 /// picture has the same diagonal, else by the pixels there are on the focal plane.
 void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
     const auto number = [&](const char* name) { return number_of(spec, name); };
+    // In pixels across; those of the height may be longer or shorter.
+    const double aspect = facts.pixel_aspect;
     // What is no lens's, below .03 degrees or above 178 across, is taken for a slip.
     const double longer = std::max(facts.width, facts.height);
     const auto take = [&](double pixels, const std::string& by) {
@@ -168,14 +170,14 @@ void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
         return true;
     };
     const double on_film = number("Exif:FocalLengthIn35mmFilm");
-    if (take(on_film * std::hypot(facts.width, facts.height) / std::hypot(36, 24),
+    if (take(on_film * std::hypot(facts.width, facts.height / aspect) / std::hypot(36, 24),
              "Exif:FocalLengthIn35mmFilm=" + shortest(on_film)))
         return;
     // Millimetres in an inch (which it is by default), a centimetre, a millimetre and a micrometre.
     const int unit = spec.get_int_attribute("Exif:FocalPlaneResolutionUnit", 2);
     const double millimetres = unit == 2 ? 25.4 : unit == 3 ? 10 : unit == 4 ? 1 : unit == 5 ? 0.001 : 0;
     if (millimetres == 0) return;
-    // Pixels are square, and as many as the camera stored, whatever the picture was resized to since, or turned.
+    // As many pixels as the camera stored, whatever the picture was resized to since, or turned.
     const double stored = std::max(number("Exif:PixelXDimension"), number("Exif:PixelYDimension"));
     const double resized = stored > 0 ? std::max(facts.width, facts.height) / stored : 1;
     const double length = number("Exif:FocalLength");
@@ -235,7 +237,10 @@ int alpha_channel_of(const ImageSpec& spec) {
 
 SourceFacts facts_of(const ImageSpec& spec) {
     const Frame frame = frame_of(spec);
-    SourceFacts facts{frame.width, frame.height, {}, {}, {}};
+    SourceFacts facts;
+    facts.width = frame.width;
+    facts.height = frame.height;
+    facts.pixel_aspect = pixel_aspect_of(spec);
     facts.has_alpha = alpha_channel_of(spec) >= 0;
     facts.channel_names = spec.channelnames;
     facts.data_channels = data_channels_of(spec);
@@ -293,12 +298,12 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
 namespace {
 
 /// Throws Error when a picture is larger than OpenImageIO allows.
-void check_size(const ImageSpec& picture) {
+void check_size(const ImageSpec& picture, const std::string& sized_by) {
     const int limit = OIIO::get_int_attribute("limits:imagesize_MB", 32768);
     const double megabytes = double(picture.width) * picture.height * picture.nchannels *
                              double(picture.format.size()) / (1024.0 * 1024.0);
     if (limit > 0 && megabytes > limit)
-        throw Error("size", std::to_string(picture.width) + "x" + std::to_string(picture.height),
+        throw Error(sized_by, std::to_string(picture.width) + "x" + std::to_string(picture.height),
                     "must make at most " + std::to_string(limit) + " MB (limits:imagesize_MB)");
 }
 
@@ -372,7 +377,7 @@ ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, b
         spec.channelnames.emplace_back("A");
         if (!spec.channelformats.empty()) spec.channelformats.push_back(spec.channelformats.front());
     }
-    check_size(spec);
+    check_size(spec, picture.sized_by);
     OIIO::ParamValueList kept;
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
         const std::string name = attribute.name().string();

@@ -83,7 +83,7 @@ NamedFiles files_of(const Operation& operation, const ParameterValues& values) {
     }
     if (operation.named)
         for (const LinkedFile& file : operation.named(values)) files[file.key] = {file.name, "", file.image};
-    if (operation.linked) named.linked = operation.linked(values, files, side_file_reader());
+    if (operation.linked) named.linked = operation.linked(values, files, KeyedFileReader(files));
     for (const LinkedFile& file : named.linked) files[file.key] = {file.name, ""};
     return named;
 }
@@ -226,7 +226,7 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
     for (const ImageBuf* src : sources) images.push_back(source_of(*src));
     const std::vector<std::string> missing = open_linked(named.linked, images, specs);
     const std::unique_ptr<const Pictures> pictures =
-        operation.read({values, known, named.files, side_file_reader(), missing});
+        operation.read({values, known, named.files, KeyedFileReader(named.files), missing});
     const PictureRequest request = *pictures->picture(0, 0);
     const ImageSpec first = sources.empty() ? ImageSpec() : upright(specs[0]);
     const std::string space = filtering_space(values, request.pixels);

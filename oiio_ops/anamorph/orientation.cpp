@@ -94,6 +94,8 @@ OIIO::ImageSpec upright(const OIIO::ImageSpec& spec) {
     out.width = data.width(), out.height = data.height();
     out.full_x = out.full_y = 0;
     out.full_width = size.width, out.full_height = size.height;
+    if (const double aspect = pixel_aspect_of(spec); order.swaps && aspect != 1)
+        out.attribute("PixelAspectRatio", static_cast<float>(1 / aspect));
     return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -106,6 +107,31 @@ class FileReader final : public SideFileReader {
 const SideFileReader& side_file_reader() {
     static const FileReader reader;
     return reader;
+}
+
+namespace {
+
+/// What `read` returns; an error of it that names no key names this one.
+template <class Read>
+auto naming(const std::string& key, const Read& read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        if (key.empty() || !error.parameter().empty()) throw;
+        throw Error(key + ": " + error.what());
+    }
+}
+
+}  // namespace
+
+std::string KeyedFileReader::text(const std::string& name) const {
+    const auto named = std::find_if(m_files.begin(), m_files.end(),
+                                    [&](const auto& file) { return file.second.name == name; });
+    return naming(named == m_files.end() ? "" : named->first, [&] { return side_file_reader().text(name); });
+}
+
+std::unique_ptr<SideImage> KeyedFileReader::image(const std::string& key, const std::string& name) const {
+    return naming(key, [&] { return side_file_reader().image(key, name); });
 }
 
 }  // namespace anamorph

@@ -10,4 +10,16 @@ namespace anamorph {
 /// calling thread alone.
 const SideFileReader& side_file_reader();
 
+/// The same, whose errors begin with the key that a file is named by: "mesh: file ... does not exist". Keeps a reference.
+class KeyedFileReader final : public SideFileReader {
+  public:
+    explicit KeyedFileReader(const SideFiles& files) : m_files(files) {}
+    std::string text(const std::string& name) const override;
+    bool exists(const std::string& name) const override { return side_file_reader().exists(name); }
+    std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const override;
+
+  private:
+    const SideFiles& m_files;
+};
+
 }  // namespace anamorph

@@ -42,6 +42,9 @@ class Content {
     /// Reads the pixels of `box`, from the corner of the data window, packed, in the spec's format. The box
     /// may reach over the right and lower edge (0 there). Throws Error.
     virtual void read(int subimage, int level, const Box& box, std::byte* pixels) const = 0;
+    /// Are there no tiles in what it is made of, and were none asked for? Programs that write it as it is had better be told of
+    /// none.
+    virtual bool prefers_scanlines() const { return false; }
     /// What another recipe may join a subimage with; nothing where it is no picture.
     virtual std::optional<JoinSource> join_source(int) const { return {}; }
 };

@@ -32,14 +32,25 @@ using OIIO::ImageSpec;
 /// name begins with a format's for that format's own, and keeps anamorph:tol out of files of any other.
 const char* const kFormat = "anamorph_recipes";
 
+/// The name of the program that has loaded us.
+const std::string& program() {
+    static const auto& name =
+        *new std::string(OIIO::Filesystem::filename(OIIO::Sysutil::this_program_path()));
+    return name;
+}
+
+/// Does the program write what it reads in tiles of the same size? Others read by tiles, and only as far as they need.
+bool copies_tiles() {
+    return program() == "oiiotool" || program() == "iconvert";
+}
+
 /// oiiotool before 3.0 answers "File does not exist" where a name that is not on disk fails to open, whatever
 /// the reason was; so there the reason is said here, once.
 void explain_to_oiiotool(const std::string& name, const std::string& reason) {
 #if OIIO_VERSION < 30000
     static auto& mutex = *new std::mutex;
     static auto& last = *new std::string;
-    const std::string program = OIIO::Filesystem::filename(OIIO::Sysutil::this_program_path());
-    if (program != "oiiotool" || OIIO::Filesystem::exists(name)) return;
+    if (program() != "oiiotool" || OIIO::Filesystem::exists(name)) return;
     const std::lock_guard lock(mutex);
     if (last != reason) std::fprintf(stderr, "anamorph: %s\n", reason.c_str());
     last = reason;
@@ -115,7 +126,9 @@ class FileInput final : public ImageInput {
             const lock_guard lock(*this);
             m_content = std::move(content);
             m_subimage = m_level = 0;
-            m_spec = spec = m_content->spec(0, 0);
+            // What another picture of ours reads is read as far as it needs.
+            m_in_scanlines = Inside::depth() == 1 && copies_tiles() && m_content->prefers_scanlines();
+            m_spec = spec = shown_spec(m_content->spec(0, 0));
             return true;
         } catch (const std::exception& e) {
             const std::string reason = message_of(e, "\"" + printable(name) + "\"");
@@ -148,7 +161,8 @@ class FileInput final : public ImageInput {
         const bool done = guarded([&] {
             if (!m_content || !has_level(*m_content, subimage, miplevel)) return;
             is_there = true;
-            if (subimage != m_subimage || miplevel != m_level) m_spec = m_content->spec(subimage, miplevel);
+            if (subimage != m_subimage || miplevel != m_level)
+                m_spec = shown_spec(m_content->spec(subimage, miplevel));
             m_subimage = subimage;
             m_level = miplevel;
         });
@@ -194,7 +208,7 @@ class FileInput final : public ImageInput {
         return guarded([&] {
             const std::shared_ptr<const Content> open = content();
             const ImageSpec& spec = level_spec(*open, subimage, miplevel);
-            if (spec.tile_width == 0) throw Error("the picture has no tiles (tile=0)");
+            if (spec.tile_width == 0 || m_in_scanlines) throw Error("the picture has no tiles (tile=0)");
             read_box(*open, subimage, miplevel, {x, y, x + spec.tile_width, y + spec.tile_height}, data);
         });
     }
@@ -262,8 +276,15 @@ class FileInput final : public ImageInput {
         }
     }
 
+    ImageSpec shown_spec(const ImageSpec& spec) const {
+        ImageSpec shown = spec;
+        if (m_in_scanlines) shown.tile_width = shown.tile_height = 0;
+        return shown;
+    }
+
     std::shared_ptr<const Content> m_content;
     int m_subimage = -1, m_level = -1;
+    bool m_in_scanlines = false;
 };
 
 class BufferOutput final : public ImageOutput {

@@ -122,8 +122,9 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
         recipe.files[first] = {parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1), "",
                                first != operation.main_file};
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
+    const SideFiles known = recipe.files;
     if (operation.linked)
-        for (const LinkedFile& file : operation.linked(recipe.values, recipe.files, side_file_reader())) {
+        for (const LinkedFile& file : operation.linked(recipe.values, known, KeyedFileReader(known))) {
             check_file_name(file.key, file.name);
             recipe.files[file.key] = {file.name, "", file.image};
             if (file.image) recipe.linked_images.push_back(file.key);

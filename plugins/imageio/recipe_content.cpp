@@ -171,15 +171,19 @@ class RecipeContent final : public Content {
         for (const std::string& key : recipe.linked_images) {
             const SideFile& file = recipe.files.at(key);
             identity += file.identity;
-            images.push_back(open_or_none(file, opening));
+            images.push_back(open_or_none(file, opening, part, parts));
             if (!images.back().image) missing.push_back(key);
             specs.push_back(images.back().image ? images.back().image->spec() : ImageSpec());
         }
-        m_pictures = recipe.operation->read({values, known, recipe.files, side_file_reader(), missing});
+        const KeyedFileReader reader(recipe.files);
+        m_pictures = recipe.operation->read({values, known, recipe.files, reader, missing});
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
         if (values.knows("mip") && values.toggle("mip"))
             while (m_pictures->picture(0, m_levels)) ++m_levels;
+        const bool has_tiles = !known.empty() && (images[0].content ? !images[0].content->prefers_scanlines()
+                                                                    : specs[0].tile_width > 0);
+        m_prefers_scanlines = values.knows("tile") && !values.given("tile") && m_levels == 1 && !has_tiles;
         const PictureRequest first = *m_pictures->picture(0, 0);
         m_space = filtering_space(values, first.pixels);
         m_stored = moves_stored(first, specs, m_space);
@@ -230,6 +234,8 @@ class RecipeContent final : public Content {
                      packed_view(pixels, as.type, box.width(), box.height(), as.channels),
                      small ? serial_for : own_threads());
     }
+
+    bool prefers_scanlines() const override { return m_prefers_scanlines; }
 
     std::optional<JoinSource> join_source(int subimage) const override {
         const Level& l = level(subimage, 0);
@@ -404,9 +410,11 @@ class RecipeContent final : public Content {
         return own > 1 ? part : 0;
     }
 
-    OpenSource open_or_none(const SideFile& file, Opening& opening) {
+    /// Its part that goes with `part` of `parts`, where it has as many, else its first.
+    OpenSource open_or_none(const SideFile& file, Opening& opening, int part, int parts) {
         try {
-            return open_source(file, opening, 0);
+            const bool has_as_many = parts > 1 && std::ssize(opening.parts_of(file)) == parts;
+            return open_source(file, opening, has_as_many ? part : 0);
         } catch (const Error&) {
             return {};
         }
@@ -471,6 +479,7 @@ class RecipeContent final : public Content {
     std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
+    bool m_prefers_scanlines = false;
     int m_levels = 1;
     bool m_stored = false;                                ///< as moves_stored() says
     bool m_moves_channels = false;                        ///< as moves_channels_stored() says
@@ -501,6 +510,7 @@ class PartsContent final : public Content {
     void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
         part(subimage)->read(0, level, box, pixels);
     }
+    bool prefers_scanlines() const override { return part(0)->prefers_scanlines(); }
     std::optional<JoinSource> join_source(int subimage) const override {
         return part(subimage)->join_source(0);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anamorph/image/border.h"
+#include "anamorph/image/coverage_source.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/summed_areas.h"
@@ -62,6 +63,79 @@ class Framed final : public Source {
     Size m_size;
     Box m_shown;
 };
+
+/// A white image of one channel whose data window is any rectangle.
+class White final : public Source {
+  public:
+    White(const Size& size, const Box& data) : m_size(size), m_data(data) {}
+
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 1; }
+    int levels() const noexcept override { return 1; }
+    Size size(int) const noexcept override { return m_size; }
+    Box extent(int) const noexcept override {
+        return {std::min(0, m_data.x0), std::min(0, m_data.y0), std::max(m_size.width, m_data.x1),
+                std::max(m_size.height, m_data.y1)};
+    }
+    Box data_window() const noexcept override { return m_data; }
+    bool read(int, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept override {
+        for (int y = box.y0; y < box.y1; ++y, texels += row_stride)
+            for (int x = box.x0; x < box.x1; ++x) {
+                const bool has = m_data.x0 <= x && x < m_data.x1 && m_data.y0 <= y && y < m_data.y1;
+                reinterpret_cast<float*>(texels)[x - box.x0] = has ? 1.0f : 0.0f;
+            }
+        return true;
+    }
+
+  private:
+    Size m_size;
+    Box m_data;
+};
+
+std::vector<float> level_of(const Source& source, int level, const Box& box) {
+    std::vector<float> texels(static_cast<std::size_t>(box.width() * box.height()));
+    EXPECT_TRUE(source.read(level, box, reinterpret_cast<std::byte*>(texels.data()),
+                            box.width() * std::ptrdiff_t{sizeof(float)}));
+    return texels;
+}
+
+// On every level, of any sizes and windows: what a pyramid makes of an image that is 1 where the file has something.
+TEST(Overscan, CoverageIsAWhiteWindowOnEveryLevel) {
+    const unsigned seed = 20261128;
+    std::printf("seed %u\n", seed);
+    std::mt19937 random(seed);
+    const auto any = [&](int least, int most) {
+        return std::uniform_int_distribution<int>(least, most)(random);
+    };
+    int partly = 0;
+    for (int round = 0; round < 60; ++round) {
+        const Size size{any(1, 150), any(1, 150)};
+        const int x = any(-60, size.width + 30), y = any(-60, size.height + 30);
+        const White white(size, {x, y, x + any(1, 200), y + any(1, 200)});
+        const Pyramid pyramid(white);
+        const CoverageSource coverage(pyramid);
+        ASSERT_EQ(coverage.levels(), pyramid.levels());
+        for (int level = 0; level < pyramid.levels(); ++level) {
+            const Box all = pyramid.extent(level);
+            ASSERT_EQ(coverage.extent(level), all);
+            const std::vector<float> truth = level_of(pyramid, level, all),
+                                     found = level_of(coverage, level, all);
+            for (std::size_t i = 0; i < truth.size(); ++i) {
+                ASSERT_NEAR(found[i], truth[i], 1e-6) << round << " " << level << " " << i;
+                partly += truth[i] > 0 && truth[i] < 1;
+            }
+            // Any part of it is the same.
+            const Box part{all.x0 + all.width() / 3, all.y0 + all.height() / 4, all.x1, all.y1};
+            const std::vector<float> some = level_of(coverage, level, part);
+            for (int j = 0; j < part.height(); ++j)
+                for (int i = 0; i < part.width(); ++i)
+                    ASSERT_EQ(some[static_cast<std::size_t>(j * part.width() + i)],
+                              found[static_cast<std::size_t>((part.y0 - all.y0 + j) * all.width() + part.x0 -
+                                                             all.x0 + i)]);
+        }
+    }
+    EXPECT_GT(partly, 500);
+}
 
 constexpr Wrap kWraps[] = {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror};
 

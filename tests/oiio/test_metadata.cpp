@@ -268,19 +268,6 @@ TEST_F(Metadata, ATurnedSourceIsReadByTiles) {
     EXPECT_LE(tiles, 9) << "of 256";
 }
 
-TEST_F(Metadata, PixelsThatAreNotSquareAreRefused) {
-    ImageBuf image = panorama(64, 32);
-    image.specmod().attribute("PixelAspectRatio", 2.0f);
-    write_image(image, "wide.exr");
-    const std::string reason = "source \"wide.exr\" has PixelAspectRatio=2: must be 1";
-    for (const char* recipe :
-         {"wide.exr.pano", "wide.exr.warp?mesh=grid.json", "wide.exr.morph?b=city.exr&features=lines.csv",
-          "city.exr.morph?b=wide.exr&features=lines.csv"})
-        EXPECT_THAT(open_error(recipe), HasSubstr(reason)) << recipe;
-    EXPECT_THAT(mesh_warp(image, options({{"mesh", "grid.json"}})).geterror(),
-                HasSubstr("has PixelAspectRatio=2: must be 1"));
-}
-
 TEST_F(Metadata, APanoramaSaysThatItIsOne) {
     const ImageSpec latlong = spec_of("city.exr.pano?to=equirectangular&size=64x32&yaw=30");
     EXPECT_EQ(latlong.get_string_attribute("GPano:ProjectionType"), "equirectangular");

@@ -154,6 +154,9 @@ class Chart {
     /// scale_x(), known better than double holds it.
     const Constant& pixels_per_unit() const { return m_sx; }
     const Constant& units_per_pixel() const { return m_per_x; }
+    /// The same from row to row.
+    const Constant& pixels_per_unit_down() const { return m_sy; }
+    const Constant& units_per_pixel_down() const { return m_per_y; }
     /// Pixels per radian straight ahead of a piece.
     double pixels_per_radian() const;
     /// The distance in pixels, or any multiple of it, between two points of one ray: a full turn; infinite where rows

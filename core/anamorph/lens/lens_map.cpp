@@ -43,13 +43,17 @@ int widened(int side, double half) {
 
 LensMap::LensMap(const Chart& observed, LensMode mode, const Size& covered, const Size& target,
                  const Size& source)
-    : PlaneMap(target, source), m_observed(observed), m_mode(mode), m_scale(observed.pixels_per_unit()) {
+    : PlaneMap(target, source),
+      m_observed(observed),
+      m_mode(mode),
+      m_scale_x(observed.pixels_per_unit()),
+      m_scale_y(observed.pixels_per_unit_down()) {
     if (!observed.lens()) throw Error("lens", "none", "must be a lens");
-    const long double per = observed.units_per_pixel().precise();
-    m_per_x = covered.width == target.width ? observed.units_per_pixel()
-                                            : Constant(per * covered.width / target.width);
-    m_per_y = covered.height == target.height ? observed.units_per_pixel()
-                                              : Constant(per * covered.height / target.height);
+    const auto stretched = [](const Constant& per, int shown, int pixels) {
+        return shown == pixels ? per : Constant(per.precise() * shown / pixels);
+    };
+    m_per_x = stretched(observed.units_per_pixel(), covered.width, target.width);
+    m_per_y = stretched(observed.units_per_pixel_down(), covered.height, target.height);
 }
 
 Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
@@ -59,10 +63,11 @@ Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
     const Lens& lens = *observed.lens();
     const LensTerms& terms = lens.terms();
     const bool undistort = mode == LensMode::undistort;
-    const double scale = observed.scale_x(), per = observed.units_per_pixel().value();
-    const double half_width = 0.5 * size.width * per, half_height = 0.5 * size.height * per;
+    const double half_width = 0.5 * size.width * observed.units_per_pixel().value(),
+                 half_height = 0.5 * size.height * observed.units_per_pixel_down().value();
     const double end = (undistort ? terms.ideal_end : terms.observed_end) * terms.unit.value();
-    const auto end_along = [&](const Constant& centre) { return (end + std::fabs(centre.value())) * scale; };
+    const double end_across = (end + std::fabs(terms.shift_x.value())) * observed.scale_x(),
+                 end_down = (end + std::fabs(terms.shift_y.value())) * observed.scale_y();
     const Point<Interval> shift{terms.shift_x.as<Interval>(), terms.shift_y.as<Interval>()};
     double across = 0, down = 0;
     for (const double side : {-1.0, 1.0})
@@ -83,17 +88,17 @@ Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
                 const Point<Interval> q = lens.ideal(p);
                 return Point<Interval>{q.x + shift.x, q.y + shift.y};
             };
-            const auto x = [&](const Interval& s) { return on_side(s).x * scale; };
-            const auto y = [&](const Interval& s) { return on_side(s).y * scale; };
+            const auto x = [&](const Interval& s) { return on_side(s).x * observed.scale_x(); };
+            const auto y = [&](const Interval& s) { return on_side(s).y * observed.scale_y(); };
             across = std::max(across, largest_magnitude(x, kSlack));
             down = std::max(down, largest_magnitude(y, kSlack));
             if (beyond(place({-1, 1}))) {
                 double& reach = upright ? across : down;
-                reach = std::max(reach, end_along(upright ? terms.shift_x : terms.shift_y));
+                reach = std::max(reach, upright ? end_across : end_down);
             }
         }
-    return {widened(size.width, std::min(across, end_along(terms.shift_x))),
-            widened(size.height, std::min(down, end_along(terms.shift_y)))};
+    return {widened(size.width, std::min(across, end_across)),
+            widened(size.height, std::min(down, end_down))};
 }
 
 }  // namespace anamorph

@@ -30,8 +30,8 @@ class LensMap : public PlaneMap<LensMap> {
     Point<T> source_point(const T& x, const T& y) const {
         const Point<T> p = m_mode == LensMode::undistort ? lens().observed(about_axis(in_plane(x, y)))
                                                          : about_middle(lens().ideal(in_plane(x, y)));
-        const auto scale = m_scale.as<T>();
-        return {p.x * scale + 0.5 * source_size().width, p.y * scale + 0.5 * source_size().height};
+        return {p.x * m_scale_x.as<T>() + 0.5 * source_size().width,
+                p.y * m_scale_y.as<T>() + 0.5 * source_size().height};
     }
     /// A number that is positive before the lens ends.
     template <class T>
@@ -72,7 +72,7 @@ class LensMap : public PlaneMap<LensMap> {
     Chart m_observed;
     LensMode m_mode;
     /// Units of the plane per target pixel, and source pixels per unit.
-    Constant m_per_x, m_per_y, m_scale;
+    Constant m_per_x, m_per_y, m_scale_x, m_scale_y;
 };
 
 }  // namespace anamorph

@@ -298,7 +298,7 @@ class DrapeRequest {
 
     /// A frame's values.
     ParameterValues values_at(int frame) const { return m_sequence.values_at(frame); }
-    Size target(const ParameterValues& values) const { return rows::size_of(values, m_source); }
+    Size target(const ParameterValues& values) const { return rows::size_of(values, square_size()); }
     surface::DrapeOptions options(const ParameterValues& values) const {
         surface::DrapeOptions options = options_of(values);
         data(values, options.filter);
@@ -350,7 +350,16 @@ class DrapeRequest {
     }
 
   private:
-    double aspect() const { return static_cast<double>(m_source.width) / m_source.height; }
+    double aspect() const { return m_facts.pixel_aspect * m_source.width / m_source.height; }
+    /// The source's size in square pixels as large as its longer ones.
+    Size square_size() const {
+        const double aspect = m_facts.pixel_aspect;
+        const auto side = [](double pixels) {
+            return static_cast<int>(std::clamp(std::round(pixels), 1.0, double{kMaxSide}));
+        };
+        return {aspect > 1 ? side(m_source.width * aspect) : m_source.width,
+                aspect < 1 ? side(m_source.height / aspect) : m_source.height};
+    }
 
     void check(int frame) const {
         try {

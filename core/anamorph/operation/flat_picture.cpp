@@ -59,6 +59,14 @@ class FlatPictures final : public Pictures {
 
 }  // namespace
 
+void add_to(FlatRequest& request, Attributes more) {
+    auto all = std::make_shared<Attributes>();
+    if (request.says)
+        for (const Attribute& attribute : *request.says) all->push_back(copy_of(attribute));
+    for (Attribute& attribute : more) all->push_back(std::move(attribute));
+    request.says = std::move(all);
+}
+
 std::shared_ptr<const Attributes> saying(Attribute attribute) {
     auto all = std::make_shared<Attributes>();
     all->push_back(std::move(attribute));

@@ -30,6 +30,9 @@ struct FlatRequest {
     Size source_size() const { return {source.width(), source.height()}; }
 };
 
+/// Adds attributes to those of a request.
+void add_to(FlatRequest& request, Attributes more);
+
 /// The attributes of a request that has a single one.
 std::shared_ptr<const Attributes> saying(Attribute attribute);
 

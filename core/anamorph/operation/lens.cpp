@@ -4,6 +4,7 @@
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
 
 namespace anamorph {
 namespace {
@@ -77,13 +78,27 @@ LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
     throw Error("lens is not given and the source does not say it: must be given, as in ptlens:b=-0.02");
 }
 
+/// The vertical field of view that pixels of that shape make; none where they are square.
+VerticalField vertical_field(Projection projection, const Size& size, double fov, double pixel_aspect) {
+    if (pixel_aspect == 1) return {};
+    const double width = plane_width(projection, fov),
+                 height = width / size.width * size.height / pixel_aspect;
+    const double degrees = vfov_of_plane_height(projection, height);
+    if (!(plane_height(projection, degrees) >= height * (1 - 1e-9)))
+        throw Error("fov", shortest(fov),
+                    "is too much: with PixelAspectRatio=" + shortest(static_cast<float>(pixel_aspect)) +
+                        " the picture is higher than " + std::string(name_of(projection)) + " shows");
+    return {degrees};
+}
+
 Observed observed_picture(const ParameterValues& values, const SourceFacts& facts, const Size& size) {
     const LensModel model = model_of(values, facts);
     const bool fisheye = model.kind == LensModel::Kind::kb4;
     const bool by_focal_length = fisheye || model.kind == LensModel::Kind::brown;
     const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
     const auto with = [&](double fov, Attributes says = {}) {
-        return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model),
+        return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model,
+                              vertical_field(projection, size, fov, facts.pixel_aspect)),
                         by_focal_length, std::move(says)};
     };
     // Of the other models nothing depends on it.
@@ -115,7 +130,8 @@ Box in_middle_of(const Size& larger, const Size& size) {
 }
 
 /// What the picture says of itself: of which field of view it was taken, and, where that is known, what it shows.
-std::shared_ptr<const Attributes> said_of(Observed& observed, LensMode mode, const Size& target) {
+std::shared_ptr<const Attributes> said_of(Observed& observed, LensMode mode, const Size& target,
+                                          double pixel_aspect) {
     auto says = std::make_shared<Attributes>(std::move(observed.says));
     const Chart& chart = observed.chart;
     if (!observed.has_fov) return says;
@@ -127,7 +143,8 @@ std::shared_ptr<const Attributes> said_of(Observed& observed, LensMode mode, con
     if (!(plane_width(chart.projection(), fov) >= width * (1 - 1e-9)) || !is_centred) return says;
     const Chart shown(chart.projection(), target.width, target.height,
                       target.width == chart.width() ? chart.fov() : fov, PixelSpacing::edges, "", 1,
-                      mode == LensMode::distort ? model : LensModel{});
+                      mode == LensMode::distort ? model : LensModel{},
+                      vertical_field(chart.projection(), target, fov, pixel_aspect));
     for (Attribute& attribute : panorama_attributes(shown, false)) says->push_back(std::move(attribute));
     return says;
 }
@@ -147,7 +164,8 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
         throw Error("overscan", printable(values.text("overscan")),
                     "must not be given together with size=all, which is as much as there is");
     FlatRequest request = flat_request(values, facts, target);
-    request.says = said_of(observed, mode, target);
+    request.says = said_of(observed, mode, target, facts.pixel_aspect);
+    add_to(request, said_of_pixels(facts.pixel_aspect));
     if (!(target == asked)) request.display = in_middle_of(target, asked);
     return flat_pictures(request, [request, chart = observed.chart, mode](const Size& pixels) {
         return FlatMap{std::make_shared<LensPlan>(

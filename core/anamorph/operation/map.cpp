@@ -4,6 +4,7 @@
 #include "anamorph/formula/text_plan.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
 
 namespace anamorph {
 namespace {
@@ -71,7 +72,8 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
         throw Error("scheme", "direct", "is of direction=pull: must be auto, exact, blocks or residual");
     const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions",
                                  pushes};
-    const FlatRequest request = flat_request(values, facts, target);
+    FlatRequest request = flat_request(values, facts, target);
+    if (target == source) add_to(request, said_of_pixels(facts.pixel_aspect));
     const PlaneFormula formula = parse_formula(text, setting);
     if (pushes)
         return pictures_of<PushedPlan>(request, [request, formula](const Size& pixels) {

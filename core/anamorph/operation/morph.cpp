@@ -155,6 +155,10 @@ void check_alike(const std::vector<SourceImage>& sources, const ParameterValues&
         if (other.channels != a.channels)
             throw Error("picture " + key + " has " + std::to_string(other.channels) + " channels and a has " +
                         std::to_string(a.channels) + ": must have as many");
+        if (other.facts.pixel_aspect != a.facts.pixel_aspect)
+            throw Error("picture " + key + " has PixelAspectRatio=" +
+                        shortest(static_cast<float>(other.facts.pixel_aspect)) + " and a has " +
+                        shortest(static_cast<float>(a.facts.pixel_aspect)) + ": must have the same");
         check_color_space(other, "picture " + key, a, "a", values);
     }
 }
@@ -238,6 +242,8 @@ class Morphs final : public Pictures {
         if (picture.pixels == PixelKind::color && m_request.frames == 1)
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));
         if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(options.data);
+        for (Attribute& attribute : said_of_pixels(request.pixel_aspect))
+            picture.says.push_back(std::move(attribute));
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
         if (const std::string shapes = named_shapes(*m_features); !shapes.empty())
             picture.says.push_back({"anamorph:shapes", shapes});
@@ -262,6 +268,8 @@ std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
     for (const SourceImage& image : input.sources) sizes.push_back(image.size());
     check_alike(input.sources, input.values);
     MorphRequest request = read_morph_request(input.values, sizes);
+    if (Size{request.width, request.height} == sizes[0])
+        request.pixel_aspect = input.sources[0].facts.pixel_aspect;
     request.options.data = rows::data_of(input.values, input.sources[0].facts, request.options.filter);
     request.options.adds_alpha =
         rows::adds_alpha(input.values, input.sources[0].alpha >= 0, request.options.wrap == Wrap::black);

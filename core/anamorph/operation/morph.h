@@ -23,6 +23,7 @@ struct MorphRequest {
     MorphOptions options;
     std::optional<double> pin_border;  ///< otherwise as the features say
     int frames = 1;
+    double pixel_aspect = 1;  ///< width of a pixel over its height, where the picture has those of the first
 
     /// The options of a frame of a film: t runs evenly from 0 in the first frame to 1 in the last; t_color
     /// does too unless it was given.

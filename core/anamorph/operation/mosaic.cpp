@@ -110,6 +110,9 @@ ConcentricStack read_stack(const ParameterValues& values) {
 
 MosaicRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
     const ConcentricStack stack = read_stack(values);
+    if (facts.pixel_aspect != 1)
+        throw Error("source has PixelAspectRatio=" + shortest(static_cast<float>(facts.pixel_aspect)) +
+                    ": must be 1 in mosaics; resize it to square pixels, or correct the attribute");
     if (facts.height % stack.circles != 0)
         throw Error("circles", std::to_string(stack.circles),
                     "must divide the source's height, " + std::to_string(facts.height));

@@ -57,6 +57,7 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         if (const std::optional<PanoramaCrop>& crop = facts.crop)
             for (const double value : {crop->width, crop->height, crop->x, crop->y, crop->w, crop->h})
                 key += " crop " + shortest(value);
+        if (facts.pixel_aspect != 1) key += " pixel aspect " + shortest(facts.pixel_aspect);
         if (facts.lens) key += " lens=" + facts.lens->text();
         if (facts.focal_length)
             key += " focal length=" + shortest(*facts.focal_length) + " by " + facts.focal_length_said_by;
@@ -88,6 +89,7 @@ void PictureRequest::add_overscan(const Size& overscan) {
     display =
         Box{overscan.width, overscan.height, overscan.width + size.width, overscan.height + size.height};
     size = {all.width(), all.height()};
+    sized_by = "overscan";
 }
 
 std::optional<Size> level_size(const Size& size, int level) {

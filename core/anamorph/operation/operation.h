@@ -51,6 +51,8 @@ struct SourceFacts {
     /// The focal length of the camera it was taken with, in pixels, and what says so.
     std::optional<double> focal_length = {};
     std::string focal_length_said_by = {};
+    /// The width of a pixel over its height.
+    double pixel_aspect = 1;
     /// The rectangle around all of its pixels, where some lie beyond the edges of its picture (Source::extent).
     std::optional<Box> overscan = {};
     /// Has it a channel of alpha?
@@ -115,6 +117,9 @@ struct PictureRequest {
 
     /// The display window, whether it is another or not.
     Box shown() const { return display.value_or(Box{0, 0, size.width, size.height}); }
+    /// The key that made the picture larger than its display window, or its size.
+    std::string sized_by = "size";
+
     /// Adds so many pixels beyond the edges of a picture of `size`, across and down, on either side.
     void add_overscan(const Size& overscan);
 };

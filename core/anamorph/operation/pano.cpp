@@ -104,7 +104,8 @@ ParameterTable make_pano_table() {
                          limited_fovs() + "; defaults by projection as for srcfov")),
         number(
             "srcvfov", "degrees", "", 1e-6, 360,
-            "vertical field of view of the source, where its pixels are not square; srcfov is then 360 for "
+            "vertical field of view of the source, where its pixels are not square and its PixelAspectRatio "
+            "does not say so; srcfov is then 360 for "
             "equirectangular, cylindrical and mercator, and for others what square pixels make of it, unless "
             "it is given"),
         number(
@@ -233,7 +234,7 @@ struct Taken {
 Taken source_projection(const ParameterValues& values, const SourceFacts& source) {
     if (values.given("from")) return {projection_from_name(values.text("from"), "from"), "given"};
     if (source.projection) return {*source.projection, "as " + source.said_by + " says"};
-    const double width = source.crop ? source.crop->width : source.width,
+    const double width = source.crop ? source.crop->width : source.width * source.pixel_aspect,
                  height = source.crop ? source.crop->height : source.height;
     if (width == 2 * height) return {Projection::equirectangular, "assumed from the 2:1 shape"};
     if (std::int64_t{source.width} * 6 == source.height)
@@ -273,9 +274,12 @@ std::optional<double> asked_fov(const ParameterValues& values, const std::string
     return degrees;
 }
 
-/// The horizontal field of view that square pixels make of a vertical one. Throws Error where there is none.
-double fov_by_vfov(Projection projection, double vfov, const Size& size, double d, const std::string& name) {
-    const double height = plane_height(projection, vfov, d), width = height / size.height * size.width;
+/// The horizontal field of view that pixels, so many times as wide as high, make of a vertical one. Throws Error where there is
+/// none.
+double fov_by_vfov(Projection projection, double vfov, const Size& size, double d, const std::string& name,
+                   double pixel_aspect = 1) {
+    const double height = plane_height(projection, vfov, d),
+                 width = height / size.height * (size.width * pixel_aspect);
     // Says what is wrong with it.
     if (height == 0)
         static_cast<void>(Chart(projection, size.width, size.height, 0, PixelSpacing::edges,
@@ -284,7 +288,28 @@ double fov_by_vfov(Projection projection, double vfov, const Size& size, double 
     if (!(plane_width(projection, degrees, d) >= width * (1 - 1e-9)))
         throw Error(name, shortest(vfov),
                     "is too much: " + std::string(name_of(projection)) + " does not show as much across " +
-                        std::to_string(size.width) + "x" + std::to_string(size.height) + " square pixels");
+                        std::to_string(size.width) + "x" + std::to_string(size.height) +
+                        (pixel_aspect == 1
+                             ? " square pixels"
+                             : " pixels of PixelAspectRatio=" + shortest(static_cast<float>(pixel_aspect))));
+    return degrees;
+}
+
+/// The vertical field of view that pixels, so many times as wide as high, make of a horizontal one. Throws Error where there is
+/// none.
+double vfov_by_fov(Projection projection, double fov, double width, double height, double d,
+                   double pixel_aspect) {
+    const std::string pixels = "source has PixelAspectRatio=" + shortest(static_cast<float>(pixel_aspect));
+    if (fov_of(projection).fixed || has_faces(projection))
+        throw Error(pixels + ": must be 1 for " + std::string(name_of(projection)) +
+                    ", which has a shape of its own; resize it to square pixels, or correct the attribute");
+    // Where the plane is one of angles degrees stay what they are.
+    if (projection == Projection::equirectangular) return fov * height / (width * pixel_aspect);
+    const double across = plane_width(projection, fov, d), down = across / width * height / pixel_aspect;
+    const double degrees = vfov_of_plane_height(projection, down, d);
+    if (!(plane_height(projection, degrees, d) >= down * (1 - 1e-9)))
+        throw Error(pixels + ": with a field of view of " + rounded_degrees(fov) +
+                    " degrees it is higher than " + std::string(name_of(projection)) + " shows");
     return degrees;
 }
 
@@ -308,6 +333,17 @@ struct TakenFieldOfView {
     std::string reason;  ///< where it goes without saying, nothing
 };
 
+/// Refuses a distance of a projection that has none.
+void check_distance(const ParameterValues& values, const std::string& name, const std::string& of,
+                    Projection projection) {
+    if (!is_given(values, name) || has_distance(projection)) return;
+    std::string names;
+    for (const Projection p : kProjections)
+        if (has_distance(p)) names += (names.empty() ? "" : " and ") + std::string(name_of(p));
+    throw Error(name, printable(values.text(name)),
+                "is of " + names + ": must not be given with " + of + "=" + std::string(name_of(projection)));
+}
+
 /// Pannini's d of the source.
 double source_distance(const ParameterValues& values, const SourceFacts& facts, Projection from) {
     const bool is_said = !values.given("srcd") && facts.distance && facts.projection == from;
@@ -326,9 +362,9 @@ TakenFieldOfView source_field_of_view(const ParameterValues& values, const Sourc
         return TakenFieldOfView{degrees, ", " + rounded_degrees(degrees) + " degrees " + reason};
     };
     if (is_given(values, "srcvfov") && !rows_turn(projection))
-        return with_reason(
-            fov_by_vfov(projection, values.number("srcvfov"), {facts.width, facts.height}, d, "srcvfov"),
-            "as srcvfov=" + printable(values.text("srcvfov")) + " says");
+        return with_reason(fov_by_vfov(projection, values.number("srcvfov"), {facts.width, facts.height}, d,
+                                       "srcvfov", facts.pixel_aspect),
+                           "as srcvfov=" + printable(values.text("srcvfov")) + " says");
     const double standard = Chart::default_fov(projection);
     if (projection != Projection::rectilinear) return {standard, ""};
     if (!facts.focal_length) return with_reason(standard, "assumed");
@@ -420,6 +456,7 @@ std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
 
 Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
+    check_distance(values, "d", "to", to);
     const double d = values.number("d");
     const LensModel lens = lens_of(values, "lens");
     Size size = values.given("size") ? values.extent("size") : Size{0, -1};
@@ -521,6 +558,7 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
     const auto [fov, fov_reason] = source_field_of_view(values, facts, from, spacing);
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
+    check_distance(values, "srcd", "from", from);
     const double d = source_distance(values, facts, from);
     const bool has_vfov = is_given(values, "srcvfov"),
                is_asked = asked_fov(values, "src", from, d).has_value(),
@@ -536,15 +574,23 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
         const bool by_metadata = !is_given(values, "srccrop") && from == Projection::equirectangular;
         const double vfov = has_vfov                                         ? values.number("srcvfov")
                             : by_metadata && crop->width != 2 * crop->height ? 180
-                                                                             : 0;
+                            : !by_metadata && facts.pixel_aspect != 1
+                                ? vfov_by_fov(from, fov, crop->width, crop->height, d, facts.pixel_aspect)
+                                : 0;
         cut = cut_to(*crop, from, facts, fov, vfov);
         whole = ", a part of " + shortest(crop->width) + "x" + shortest(crop->height) + " at " +
                 shortest(crop->x) + "," + shortest(crop->y);
     } else if (has_vfov) {
         // What made the horizontal field of view has square pixels.
-        if (rows_turn(from) || is_asked || is_said) cut.vertical.fov = values.number("srcvfov");
+        if (rows_turn(from) || is_asked || is_said || facts.pixel_aspect != 1)
+            cut.vertical.fov = values.number("srcvfov");
     } else if (facts.vfov && is_said && !is_asked) {
         cut.vertical.fov = *facts.vfov;
+    } else if (facts.pixel_aspect != 1) {
+        // Fields of view run between the outer pixels' centres, or their edges.
+        const double edge = spacing == PixelSpacing::centers ? 1 : 0;
+        cut.vertical.fov =
+            vfov_by_fov(from, fov, facts.width - edge, facts.height - edge, d, facts.pixel_aspect);
     }
     return {Chart(from, facts.width, facts.height, cut.fov, spacing, "src", d, srclens, cut.vertical),
             reason + fov_reason + whole, cut.ahead};

@@ -52,6 +52,12 @@ std::vector<int> moved_channels(const DataChannels& data) {
     return data.filter == Filter::nearest ? data.channels : std::vector<int>{};
 }
 
+Attributes said_of_pixels(double aspect) {
+    Attributes says;
+    if (aspect != 1) says.push_back({"PixelAspectRatio", aspect});
+    return says;
+}
+
 std::unique_ptr<const SolvedPicture> solved(Picture picture) {
     return std::make_unique<Solved>(std::move(picture));
 }

@@ -240,6 +240,8 @@ class Warps final : public Pictures {
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         picture.adds_alpha = request.options.adds_alpha;
         if (!request.machine) picture.says = {{"anamorph:tol", request.options.tol}};
+        for (Attribute& attribute : said_of_pixels(request.pixel_aspect))
+            picture.says.push_back(std::move(attribute));
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
             !request.program)
             picture.moves = 0;
@@ -369,6 +371,9 @@ std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
     const std::shared_ptr<const WarpMap> map = read_map(request, input);
     const auto* mesh = std::get_if<ControlMesh>(&map->shape);
     if (mesh && mesh->width > 0) take_windows(*mesh, input.values, request);
+    const Box shown = request.display.value_or(Box{0, 0, request.target.width, request.target.height});
+    if (Size{shown.width(), shown.height()} == request.source)
+        request.pixel_aspect = input.sources[0].facts.pixel_aspect;
     return std::make_unique<Warps>(request, take_overscan(map, input.values, request));
 }
 

@@ -23,6 +23,7 @@ struct WarpRequest {
     /// The unit that draws a warp of scheme hardware, in place of options.scheme and tol.
     std::optional<machine::ShaderUnit> machine = {};
     std::optional<machine::ShaderProgram> program = {};  ///< the user's program, in place of ours
+    double pixel_aspect = 1;  ///< width of a pixel over its height, where the picture has those of the source
 };
 
 /// Reads a request from a table's values. Without `size` the picture has the source's; with one number, the

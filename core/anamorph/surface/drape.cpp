@@ -505,6 +505,9 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
     if (!source) return m_picture.draw(source, box, view, parallel_for);
+    if (back && (back->channels() != source->channels() || !(back->size(0) == source->size(0)) ||
+                 back->unassociated_alpha() != source->unassociated_alpha()))
+        throw Error("the picture on the far side has another size or other channels: must be as src");
     std::optional<MirroredSource> mirrored;
     if (back) back = &mirrored.emplace(*back);
     // Sources that keep no sums are lent a place for them.
