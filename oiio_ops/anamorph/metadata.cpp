@@ -111,7 +111,7 @@ void read_projection(const std::string& text, SourceFacts& facts) {
         rest.erase(0, word.size() + value.size());
         return value;
     };
-    const std::string vfov = next(" vfov="), distance = next(" d=");
+    const std::string vfov = next(" vfov="), distance = next(" d="), second = next(" e=");
     constexpr std::string_view kLens = " lens=";
     try {
         const Projection projection = projection_from_name(text.substr(0, blank));
@@ -122,8 +122,10 @@ void read_projection(const std::string& text, SourceFacts& facts) {
         return;
     }
     facts.said_by = kPanoramaProjection;
-    for (const auto& [written, to] :
-         {std::pair{fov, &facts.fov}, {vfov, &facts.vfov}, {distance, &facts.distance}})
+    for (const auto& [written, to] : {std::pair{fov, &facts.fov},
+                                      {vfov, &facts.vfov},
+                                      {distance, &facts.distance},
+                                      {second, &facts.second}})
         if (Strutil::string_is_float(written)) *to = Strutil::stod(written);
 }
 

@@ -10,6 +10,7 @@
 
 #include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
+#include "anamorph/lens_database.h"
 #include "anamorph/metadata.h"
 #include "anamorph/operation/drape.h"
 #include "anamorph/operation/morph.h"
@@ -214,13 +215,16 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
     check_count(operation, sources.size());
     std::vector<ImageSpec> specs;
     std::vector<SourceImage> known;
+    std::vector<ImageSpec> shown;
     for (const ImageBuf* src : sources) {
         if (!src) throw Error("a source image is null");
         check_readable(*src);
         specs.push_back(src->spec());
-        known.push_back(source_image(upright(src->spec())));
+        shown.push_back(upright(src->spec()));
+        known.push_back(source_image(shown.back()));
     }
-    const ParameterValues values = values_of(operation, options, dst);
+    ParameterValues values = values_of(operation, options, dst);
+    const Attributes lenses = find_lenses(operation, values, shown, known);
     const NamedFiles named = files_of(operation, values);
     std::vector<std::unique_ptr<Source>> images;
     for (const ImageBuf* src : sources) images.push_back(source_of(*src));
@@ -248,6 +252,7 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
         throw;
     }
     add_attributes(dst.specmod(), own_attributes(request.says));
+    add_attributes(dst.specmod(), lenses);
     add_attributes(dst.specmod(), reached);
 }
 

@@ -10,6 +10,7 @@
 
 #include "anamorph/chain/joined.h"
 #include "anamorph/image_source.h"
+#include "anamorph/lens_database.h"
 #include "anamorph/metadata.h"
 #include "anamorph/operation/memo.h"
 #include "anamorph/operation/solved.h"
@@ -153,19 +154,21 @@ class RecipeContent final : public Content {
   public:
     /// `parts`: how many the source has that has most.
     RecipeContent(const Recipe& recipe, Opening& opening, int part, int parts) {
-        const ParameterValues& values = recipe.values;
+        ParameterValues values = recipe.values;
         std::vector<OpenSource> images;
-        std::vector<ImageSpec> specs;
+        std::vector<ImageSpec> specs, shown;
         std::vector<SourceImage> known;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
             const int own = part_in(file, opening, part, parts);
             images.push_back(open_source(file, opening, own));
             specs.push_back(images.back().image->spec());
-            known.push_back(source_image(upright(specs.back())));
+            shown.push_back(upright(specs.back()));
+            known.push_back(source_image(shown.back()));
             identity += file.identity + std::to_string(own) + "\n";
         }
-        if (!specs.empty()) m_source = upright(specs[0]);
+        if (!specs.empty()) m_source = shown[0];
+        m_lenses = find_lenses(*recipe.operation, values, shown, known);
         if (parts > 1) m_part = std::to_string(part) + " of " + std::to_string(parts);
         std::vector<std::string> missing;
         for (const std::string& key : recipe.linked_images) {
@@ -457,6 +460,7 @@ class RecipeContent final : public Content {
             // Channels that are moved keep the type of all of them.
             if (m_moves_channels && made.header.channelformats.empty()) made.header.format = m_source->format;
             if (!m_part.empty()) say_part(made.header);
+            add_attributes(made.header, m_lenses);
             if (!m_said_of_chain.empty()) made.header.attribute("anamorph:chain", m_said_of_chain);
             if (m_joined)
                 made.header.attribute(
@@ -471,6 +475,7 @@ class RecipeContent final : public Content {
     std::optional<ImageSpec> m_source;  ///< of the first source, upright
     std::unique_ptr<const Pictures> m_pictures;
     std::string m_key;            ///< of the operation
+    Attributes m_lenses;          ///< what lenses of a database are
     std::string m_part;           ///< which of several parts is drawn, "0 of 3"
     std::string m_chain;          ///< the maps that the picture is drawn through, "pano of lens"
     std::string m_said_of_chain;  ///< what the picture says of that where its source is a recipe

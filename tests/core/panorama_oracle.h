@@ -34,7 +34,9 @@ struct View {
 
 /// A picture through a lens, in a projection that may have it.
 inline View view_through(const std::string& lens, const Size& size, double fov) {
-    return {lens.starts_with("kb4") ? Projection::fisheye : Projection::rectilinear,
+    return {lens.starts_with("kb4")    ? Projection::fisheye
+            : lens.starts_with("ocam") ? Projection::stereographic
+                                       : Projection::rectilinear,
             size.width,
             size.height,
             fov,
@@ -136,9 +138,11 @@ class LensOracle {
     explicit LensOracle(const View& v) : m_kind(v.lens.kind), m_values(v.lens.values) {
         using enum LensModel::Kind;
         const std::size_t n = m_values.size();
-        m_unit = m_kind == ptlens   ? std::min(v.width, v.height) / Real(2)
+        m_unit = m_kind == ptlens || m_kind == poly ? std::min(v.width, v.height) / Real(2)
+                 : m_kind == ocam                   ? 1
                  : is_of_observed() ? std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / 2
                                     : scale(v).x;
+        m_scale = scale(v).x;
         m_cx = Real(v.width) / 2 + m_values[n - 2];
         m_cy = Real(v.height) / 2 + m_values[n - 1];
         // In steps up to where the radius falls; the top lies within one of them.
@@ -159,7 +163,8 @@ class LensOracle {
     }
     /// Is the formula one of observed points?
     bool is_of_observed() const {
-        return m_kind == LensModel::Kind::three_de4 || m_kind == LensModel::Kind::division;
+        return m_kind == LensModel::Kind::three_de4 || m_kind == LensModel::Kind::division ||
+               m_kind == LensModel::Kind::ocam;
     }
     /// The model's own function.
     Real formula(Real r) const {
@@ -176,6 +181,13 @@ class LensOracle {
                 return r + k(0) * r2 * r + k(1) * r4 * r;
             case division:
                 return r / (1 + k(0) * r2 + k(1) * r4);
+            case poly:
+                return r * (1 + k(0)) + k(1) * r2 + k(2) * r2 * r + k(3) * r4 + k(4) * r4 * r;
+            case ocam: {
+                // The angle from the axis, and its radius in a stereographic picture.
+                const Real ahead = k(0) + k(1) * r2 + k(2) * r2 * r + k(3) * r4;
+                return 2 * m_scale * std::tan(std::atan2(r, k(0) < 0 ? -ahead : ahead) / 2);
+            }
             default:
                 return r + k(0) * r2 * r + k(1) * r4 * r + k(2) * r4 * r2 * r + k(3) * r4 * r4 * r;
         }
@@ -206,6 +218,10 @@ class LensOracle {
             const Real p1 = m_values[6], p2 = m_values[7];
             p.x += 2 * p1 * x * y + p2 * (r * r + 2 * x * x);
             p.y += p1 * (r * r + 2 * y * y) + 2 * p2 * x * y;
+            // OpenCV's thin prism.
+            const Real r2 = r * r, r4 = r2 * r2;
+            p.x += m_values[8] * r2 + m_values[9] * r4;
+            p.y += m_values[10] * r2 + m_values[11] * r4;
         }
         return {p.x * m_unit + m_cx, p.y * m_unit + m_cy};
     }
@@ -216,8 +232,9 @@ class LensOracle {
         const Real radius = is_of_observed() ? formula(r) : root(r);
         const Point<Real> p{radius * std::cos(angle) * m_unit + Real(v.width) / 2,
                             radius * std::sin(angle) * m_unit + Real(v.height) / 2};
-        const bool tangential = m_kind == LensModel::Kind::brown && (m_values[6] != 0 || m_values[7] != 0) &&
-                                std::isfinite(radius);
+        const bool tangential =
+            m_kind == LensModel::Kind::brown && std::isfinite(radius) &&
+            std::any_of(m_values.begin() + 6, m_values.begin() + 12, [](double value) { return value != 0; });
         return tangential ? newton(v, observed, p) : p;
     }
 
@@ -237,7 +254,7 @@ class LensOracle {
   private:
     LensModel::Kind m_kind;
     std::vector<double> m_values;
-    Real m_unit = 1, m_cx = 0, m_cy = 0, m_end = 0;
+    Real m_unit = 1, m_scale = 1, m_cx = 0, m_cy = 0, m_end = 0;
 };
 
 inline const LensOracle& lens_of(const View& v) {

@@ -23,7 +23,7 @@ inline constexpr const char* kFormat = R"(
 A file has lines that begin with these words. A # begins a comment; the first ones say what is meant and where
 the numbers are from.
   chart size=600x400 fov=180
-      of a projection; also pixels=centers, d=1, lens=MODEL:name=value
+      of a projection; also pixels=centers, d=1, e=0.5, lens=MODEL:name=value
   chart projection=fisheye size=600x400 fov=180 lens=kb4:k1=0.1
       of a lens; also pixels=centers
   surface aspect=1.5 radius=0.4

@@ -231,6 +231,53 @@ TEST(Chart, LensFormulas) {
     const double hammer = std::sqrt(2 / (1 + std::cos(e) * std::cos(a / 2)));
     expect(Projection::hammer, 2 * hammer * std::cos(e) * std::sin(a / 2), hammer * std::sin(e));
     expect(Projection::pannini, 2 * std::tan(a / 2), 2 / (1 + std::cos(a)) * std::tan(e));
+    // Of d = 1, which is beta and xi, and e = 1/2, which is their alpha.
+    expect(Projection::eucm, 2 * std::tan(t / 2) * ray.x * k, 2 * std::tan(t / 2) * ray.y * k);
+    expect(Projection::double_sphere, 4 * std::tan(t / 4) * ray.x * k, 4 * std::tan(t / 4) * ray.y * k);
+}
+
+// EUCM with beta = 1 and the double sphere model with xi = 0 are the unified model with its xi = alpha / (1 - alpha).
+TEST(Chart, ModelsOfSpheresMeet) {
+    for (const double alpha : {0.0, 0.25, 0.5, 0.75}) {
+        const auto chart = [](Projection projection, const Distance& d) {
+            return Chart(projection, 600, 400, 110, PixelSpacing::edges, "", d);
+        };
+        const Chart unified = chart(Projection::unified, alpha / (1 - alpha)),
+                    others[] = {chart(Projection::eucm, {1, alpha}),
+                                chart(Projection::double_sphere, {0, alpha})};
+        for (const Chart& other : others)
+            for (const double x : {3.0, 250.5, 599.0})
+                for (const double y : {1.0, 220.0}) {
+                    const Ray<long double> there = unified.ray<long double>(x, y);
+                    const Point<long double> p = other.point(there, 0);
+                    // alpha / (1 - alpha) of 3/4 and 1/4 is 3 and 1/3, rounded.
+                    EXPECT_NEAR(static_cast<double>(p.x - x), 0, 1e-13) << name_of(other.projection());
+                    EXPECT_NEAR(static_cast<double>(p.y - y), 0, 1e-13) << name_of(other.projection());
+                }
+    }
+}
+
+TEST(Chart, NumbersOfProjectionsAreTheirs) {
+    const auto refused = [](Projection projection, double d, double e) -> std::string {
+        try {
+            static_cast<void>(Chart(projection, 60, 40, 80, PixelSpacing::edges, "src", {d, e}));
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refused(Projection::eucm, 1000, 1), "");
+    EXPECT_EQ(refused(Projection::eucm, 0.001, 0), "");
+    EXPECT_EQ(refused(Projection::double_sphere, -0.999, 0.5), "");
+    EXPECT_EQ(refused(Projection::double_sphere, 1, 1), "");
+    EXPECT_EQ(refused(Projection::rectilinear, -0.999, 1), "");
+    EXPECT_EQ(refused(Projection::eucm, 0, 1), "srcd=0: must be from 0.001 to 1000 for eucm");
+    EXPECT_EQ(refused(Projection::eucm, 1, 1.01), "srce=1.01: must be from 0 to 1 for eucm");
+    EXPECT_EQ(refused(Projection::double_sphere, 1.01, 0.5),
+              "srcd=1.01: must be from -0.999 to 1 for double_sphere");
+    EXPECT_EQ(refused(Projection::double_sphere, 0, NAN), "srce=nan: must be from 0 to 1 for double_sphere");
+    EXPECT_EQ(refused(Projection::unified, -0.5, 0.5), "srcd=-0.5: must be from 0 to 1000 for unified");
+    EXPECT_EQ(refused(Projection::unified, 1001, 0.5), "srcd=1001: must be from 0 to 1000 for unified");
 }
 
 TEST(Chart, APanoramasCornersAndPoles) {

@@ -40,12 +40,18 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "brown:k4=0.3",
                                "brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003",
                                "brown:p1=-0.01,d=30",
+                               "brown:k1=-0.1,k2=0.02,s1=0.002,s2=-0.001,s3=-0.003,s4=0.0005",
+                               "brown:k1=0.1,p1=0.002,p2=-0.001,s1=-0.003,s2=0.0004,d=9",
                                "brown:k1=0.05,k4=0.02,p1=0.005,p2=0.02,e=-20",
                                "3de4:k1=0.1,k2=0.03",
                                "3de4:k1=-0.25,d=20,e=10",
                                "3de4:k1=-0.5,k2=0.2",
                                "division:k1=-0.25",
                                "division:k1=0.2,k2=-0.05,d=-15,e=8",
+                               "poly:k0=0.03,k2=-0.04,k4=0.005",
+                               "poly:k0=-0.02,k1=0.02,k2=-0.03,k3=0.01,k4=0.002,d=7,e=-12",
+                               "ocam:a0=-400,a2=5e-4,a3=-1e-7,a4=2e-10,d=4.5,e=-3",
+                               "ocam:a0=500,a2=-2e-4,a4=-1e-10",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003",
                                "kb4:k1=-0.1,k2=0.02,k3=-0.003,k4=0.0002,e=3"};
 
@@ -300,6 +306,7 @@ TEST(LensModel, ReadsWhatItWrites) {
         EXPECT_EQ(again.values, model.values);
     }
     EXPECT_EQ(LensModel::parse("brown:k2=0.5,p1=-0.25,d=3").text(), "brown:k2=0.5,p1=-0.25,d=3");
+    EXPECT_EQ(LensModel::parse("brown:s4=-0.5,s1=0.25,e=3").text(), "brown:s1=0.25,s4=-0.5,e=3");
     EXPECT_EQ(LensModel::parse("none").text(), "none");
     EXPECT_EQ(LensModel::parse("3de4:k2=1e-3").values, (std::vector<double>{0, 1e-3, 0, 0}));
 }
@@ -316,7 +323,7 @@ void expect_refused(const std::string& text, const std::string& rule) {
 }
 
 TEST(LensModel, RefusesWhatItCannotRead) {
-    expect_refused("", "must begin with one of none, ptlens, brown, 3de4, kb4, division");
+    expect_refused("", "must begin with one of none, ptlens, brown, 3de4, kb4, division, poly, ocam");
     expect_refused("plens:a=1", "must begin with one of");
     expect_refused("none:a=1", "none has no values");
     for (const char* text :
@@ -326,6 +333,9 @@ TEST(LensModel, RefusesWhatItCannotRead) {
     for (const char* text : {"brown:k1", "brown:k1=", "brown:k1=x", "brown:k1=1x", "brown:k1=nan",
                              "brown:k1=inf", "brown:k1=1e7", "brown:k1=-2000000", "brown:k1= 1"})
         expect_refused(text, "k1 must be a number from -1000000 to 1000000");
+    expect_refused("brown:s2=nan", "s2 must be a number from -1000000 to 1000000");
+    expect_refused("brown:s5=1",
+                   "must be followed by values of k1, k2, k3, k4, k5, k6, p1, p2, s1, s2, s3, s4, d, e");
 }
 
 TEST(Lens, RefusesToFoldWithinThePicture) {
@@ -335,9 +345,15 @@ TEST(Lens, RefusesToFoldWithinThePicture) {
     expect_refused("brown:k1=-1", "folds at a radius of");
     // A tangential part takes up half of the rest before the picture folds.
     expect_refused("brown:p1=0.5", "ends at a radius of");
+    expect_refused("brown:s1=0.5", "ends at a radius of");
+    expect_refused("brown:s4=-0.5", "ends at a radius of");
     expect_refused("3de4:k1=-3", "folds at a radius of");
     expect_refused("division:k1=4", "folds at a radius of");
     expect_refused("kb4:k1=-2", "folds at a radius of");
+    expect_refused("poly:k0=-1", "folds at a radius of 0 pixels");
+    expect_refused("poly:k4=-1", "folds at a radius of");
+    expect_refused("ocam:a2=1e-4", "folds at a radius of 0 pixels");
+    expect_refused("ocam:a0=-400,a2=-0.005", "folds at a radius of");
 }
 
 TEST(Lens, IsRefusedWherePicturesHaveNone) {
@@ -360,7 +376,9 @@ TEST(Lens, IsRefusedWherePicturesHaveNone) {
         EXPECT_EQ(rule(p, "3de4:k1=0.01") != "", none) << name_of(p);
         EXPECT_EQ(rule(p, "division:k1=-0.01") != "", none) << name_of(p);
         EXPECT_EQ(rule(p, "brown:k1=0.01") != "", p != Projection::rectilinear) << name_of(p);
+        EXPECT_EQ(rule(p, "poly:k0=0.01") != "", none) << name_of(p);
         EXPECT_EQ(rule(p, "kb4:k1=0.01") != "", p != Projection::fisheye) << name_of(p);
+        EXPECT_EQ(rule(p, "ocam:a0=-20") != "", p != Projection::stereographic) << name_of(p);
     }
     EXPECT_THAT(rule(Projection::cubemap, "ptlens"),
                 HasSubstr("must be none for cubemap, which has no lens"));

@@ -27,6 +27,10 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "3de4:k1=0.1,k2=0.03",
                                "3de4:k1=-0.25",
                                "division:k1=-0.1,k2=0.01",
+                               "poly:k0=0.03,k2=-0.04,k4=0.005",
+                               "poly:k0=-0.02,k1=0.02,k2=-0.03,k3=0.01,k4=0.002,d=7,e=-12",
+                               "ocam:a0=-400,a2=5e-4,a3=-1e-7,a4=2e-10,d=4.5,e=-3",
+                               "ocam:a0=500,a2=-2e-4,a4=-1e-10",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
 /// The k-th divided difference of f over k + 1 points: its k-th derivative somewhere between them, over k!.
@@ -142,7 +146,8 @@ TEST(LensTable, TakesAnyInterval) {
              {Interval(0), Interval(0, reach * reach), Interval(0, 1e6 * reach * reach), Interval(1e6),
               Interval::all(), Interval(NAN, NAN)}) {
             const LensCoefficients found = shrink_coefficients(terms, squared);
-            const Real centre = 1 / Real(chart.lens()->model().magnification());
+            const Real magnified = chart.lens()->magnification(),
+                       centre = terms.to_observed ? 1 / magnified : magnified;
             if (squared.contains(0)) {
                 EXPECT_LE(found.c[0].lo, centre + 1e-15L) << text;
                 EXPECT_GE(found.c[0].hi, centre - 1e-15L) << text;
@@ -174,7 +179,8 @@ TEST(LensTable, ViewsThroughLensesTakeFewBlocks) {
         return count;
     };
     const std::size_t bare = blocks_of(Chart(Projection::rectilinear, size.width, size.height, 90));
-    for (const char* text : {"brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003", "3de4:k1=0.1,k2=0.03"})
+    for (const char* text : {"brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003", "brown:k1=-0.1,s1=0.002,s3=-0.001",
+                             "3de4:k1=0.1,k2=0.03"})
         EXPECT_LE(2 * blocks_of(oracle::chart_of(oracle::view_through(text, size, 90))), 3 * bare) << text;
 }
 

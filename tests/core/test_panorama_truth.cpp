@@ -372,6 +372,10 @@ TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
         {sphere, lens(fish, "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"), {0, -90, 0}, 0.01},
         {lens(photo, "ptlens:a=0.02,b=-0.05,c=0.01"), flat, {5, 5, 5}, 0.01},
         {lens(photo, "brown:k1=-0.2,k2=0.05,p1=0.001,p2=-0.002,d=30,e=-20"), flat, {5, 5, 5}, 0.01},
+        {lens(photo, "brown:k1=-0.2,k2=0.05,p1=0.001,s1=-0.002,s2=0.001,s3=0.001,d=30"),
+         flat,
+         {5, 5, 5},
+         0.01},
         {lens(photo, "3de4:k1=-0.1,k2=0.02,d=30"), lens(flat, "ptlens:b=0.03"), {5, 5, 5}, 1e-4},
         // Lenses that fold in the picture, just beyond the circle that it holds.
         {lens(photo, "ptlens:b=-0.45"), flat, {0, 0, 0}, 0.01},
@@ -688,7 +692,8 @@ std::string first_beyond(const Panorama& map, const PanoramaPlan& plan, double m
 // Block by block, not only where all of a region lies beyond an edge. (Next to a fold bounds are too wide to tell.)
 TEST(PanoramaTruth, NoBlockIsDrawnThatLiesBeyondAnEdge) {
     const Chart view(rectilinear, 1024, 1024, 60);
-    for (const char* lens : {"none", "3de4:k1=0.1,k2=0.03", "brown:k1=-0.1,k2=0.02,p1=0.002"})
+    for (const char* lens : {"none", "3de4:k1=0.1,k2=0.03", "brown:k1=-0.1,k2=0.02,p1=0.002",
+                             "brown:k1=-0.1,s1=0.002,s2=0.0005,s4=-0.001"})
         for (const double tol : {0.01, 1e-3, 1e-6, 0.0}) {
             const Chart source(rectilinear, 2048, 2048, 90, PixelSpacing::edges, "", 1,
                                LensModel::parse(lens));

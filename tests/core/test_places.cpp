@@ -211,8 +211,8 @@ Chart chart_of(const Group& group, std::string_view projection) {
               height = int(number_of(group.at, size.substr(x + 1)));
     try {
         return Chart(projection_from_name(projection), width, height, number("fov", "0"),
-                     pixels == "edges" ? PixelSpacing::edges : PixelSpacing::centers, "", number("d", "1"),
-                     LensModel::parse(group.setting("lens", "none")));
+                     pixels == "edges" ? PixelSpacing::edges : PixelSpacing::centers, "",
+                     {number("d", "1"), number("e", "0.5")}, LensModel::parse(group.setting("lens", "none")));
     } catch (const Error& e) {
         refuse(group.at, e.what());
     }
@@ -290,7 +290,7 @@ void expect_none(const Complaints& complaints) {
 Compare compare_projection(const std::string& projection) {
     return [projection](const std::string& file, const std::vector<Group>& groups) {
         Complaints wrong = compare_both_ways(kProjectionFiles, file, groups, [&](const Group& group) {
-            group.allow({"size", "fov", "pixels", "d", "lens"});
+            group.allow({"size", "fov", "pixels", "d", "e", "lens"});
             return ways_of_chart(chart_of(group, projection));
         });
         for (const Group& group : groups) append(wrong, compare_all(group, chart_of(group, projection)));

@@ -63,17 +63,22 @@ Plane turned(Real radius, const Vector& v) {
 /// whole picture without faces, fills from -half to half across.
 class Oracle {
   public:
-    explicit Oracle(const Chart& chart, Real d)
+    explicit Oracle(const Chart& chart)
         : m_projection(chart.projection()),
           m_width(chart.width()),
           m_height(chart.height()),
-          m_d(d),
+          m_d(chart.distance().d),
+          m_e(chart.distance().e),
           m_spans(m_width - (chart.spacing() == PixelSpacing::centers ? 1 : 0)) {
         const Real h = static_cast<Real>(chart.fov()) / 2 * kDegree;
         switch (m_projection) {
             case Projection::pannini:
             case Projection::unified:
-                m_half = (d + 1) * std::sin(h) / (d + std::cos(h));
+                m_half = (m_d + 1) * std::sin(h) / (m_d + std::cos(h));
+                break;
+            case Projection::eucm:
+            case Projection::double_sphere:
+                m_half = of_sphere(h);
                 break;
             case Projection::orthographic:
                 m_half = std::sin(h);
@@ -187,6 +192,12 @@ class Oracle {
                 const Real t = pannini_azimuth(r);
                 return r > edge_of_sphere() ? kNoRay : of_polar(t, around);
             }
+            case Projection::eucm:
+            case Projection::double_sphere: {
+                Real edge;
+                const Real t = sphere_angle(r, edge);
+                return r > edge ? kNoRay : of_polar(t, around);
+            }
             case Projection::sinusoidal:
                 if (std::fabs(y) > kPi / 2 || std::fabs(x) > m_half * std::cos(y)) return kNoRay;
                 return of_angles(x / std::cos(y), y);
@@ -229,6 +240,9 @@ class Oracle {
             case Projection::unified:
                 return t >= pannini_end() ? kNoPoint
                                           : turned((m_d + 1) * std::sin(t) / (m_d + std::cos(t)), v);
+            case Projection::eucm:
+            case Projection::double_sphere:
+                return t >= sphere_end() ? kNoPoint : turned(of_sphere(t), v);
             case Projection::sinusoidal:
                 return {a * std::cos(e), e};
             case Projection::hammer: {
@@ -257,6 +271,40 @@ class Oracle {
         // d - 2 (d . n) n, with d = (0, 0, 1).
         return {-2 * z * x, -2 * z * y, 1 - 2 * z * z};
     }
+    /// The radius of an angle from the axis, by the definitions of Khomutenko 2016 and Usenko 2018 with alpha = e.
+    Real of_sphere(Real t) const {
+        const Real s = std::sin(t), c = std::cos(t);
+        if (m_projection == Projection::eucm)
+            return s / (m_e * std::sqrt(m_d * s * s + c * c) + (1 - m_e) * c);
+        const Real w = m_d + c;
+        return (1 + m_d) * s / (m_e * std::hypot(s, w) + (1 - m_e) * w);
+    }
+    /// Where the radius turns round, or has no end: by steps, then halving.
+    Real sphere_end() const {
+        const auto rises = [&](Real t) {
+            const Real h = 1e-9L, before = of_sphere(t - h), after = of_sphere(t + h);
+            return before < after && before >= 0;
+        };
+        Real low = 1e-3L, step = kPi / 4096;
+        while (low + step < kPi && rises(low + step)) low += step;
+        Real high = std::min(low + step, kPi);
+        for (int i = 0; i < 60; ++i) {
+            const Real middle = (low + high) / 2;
+            (rises(middle) ? low : high) = middle;
+        }
+        return low;
+    }
+    /// By halving; `edge`: the largest radius.
+    Real sphere_angle(Real r, Real& edge) const {
+        Real low = 0, high = sphere_end();
+        edge = of_sphere(high);
+        if (m_e <= 0.5L) edge = HUGE_VALL;
+        for (int i = 0; i < 120; ++i) {
+            const Real middle = (low + high) / 2;
+            (of_sphere(middle) < r ? low : high) = middle;
+        }
+        return (low + high) / 2;
+    }
     /// The largest radius of the unified model: where the sphere's far side begins.
     Real edge_of_sphere() const { return m_d > 1 ? (m_d + 1) / std::sqrt(m_d * m_d - 1) : HUGE_VALL; }
 
@@ -274,7 +322,7 @@ class Oracle {
 
     Projection m_projection;
     int m_width, m_height;
-    Real m_d, m_half = 1;
+    Real m_d, m_e, m_half = 1;
     int m_spans;  ///< pixels that 2 m_half cover, of pictures without faces and of the octahedron's
 };
 
@@ -283,6 +331,7 @@ struct Case {
     int width, height;
     double fov = 0, d = 1;
     PixelSpacing spacing = PixelSpacing::edges;
+    double e = 0.5;
 };
 
 const Case kCases[] = {
@@ -311,6 +360,17 @@ const Case kCases[] = {
     {Projection::unified, 25, 31, 100, 0.5},
     {Projection::unified, 30, 20, 220, 1},
     {Projection::unified, 30, 20, 160, 7},
+    {Projection::eucm, 30, 20, 150, 1.1, PixelSpacing::edges, 0.6},
+    {Projection::eucm, 30, 20, 110, 2, PixelSpacing::edges, 0},
+    {Projection::eucm, 25, 31, 100, 0.7, PixelSpacing::edges, 0.35},
+    {Projection::eucm, 30, 20, 190, 1.6, PixelSpacing::centers, 0.62},
+    {Projection::eucm, 30, 20, 120, 0.25, PixelSpacing::edges, 1},
+    {Projection::double_sphere, 30, 20, 150, -0.2, PixelSpacing::edges, 0.6},
+    {Projection::double_sphere, 25, 31, 100, 0.4, PixelSpacing::edges, 0.3},
+    {Projection::double_sphere, 30, 20, 200, 0.1, PixelSpacing::centers, 0.55},
+    {Projection::double_sphere, 30, 20, 200, 0.8, PixelSpacing::edges, 1},
+    {Projection::double_sphere, 30, 20, 300, 1, PixelSpacing::edges, 0.7},
+    {Projection::double_sphere, 30, 20, 120, -0.9, PixelSpacing::edges, 0.5},
     {Projection::dual_fisheye_tb, 20, 40, 210},
     {Projection::dual_fisheye_tb, 20, 40, 120},
     {Projection::equisolid, 31, 31, 360},
@@ -375,9 +435,10 @@ TEST(ProjectionOracle, BothWays) {
     std::uniform_real_distribution<double> unit_range(0, 1);
     std::normal_distribution<double> normal;
     for (const Case& c : kCases) {
-        SCOPED_TRACE(testing::Message() << name_of(c.projection) << " fov " << c.fov << " d " << c.d);
-        const Chart chart(c.projection, c.width, c.height, c.fov, c.spacing, "", c.d);
-        const Oracle oracle(chart, static_cast<Real>(c.d));
+        SCOPED_TRACE(testing::Message()
+                     << name_of(c.projection) << " fov " << c.fov << " d " << c.d << " e " << c.e);
+        const Chart chart(c.projection, c.width, c.height, c.fov, c.spacing, "", {c.d, c.e});
+        const Oracle oracle(chart);
         Checked checked(chart, oracle);
         // Between pixel centres the outer ones stand on the octahedron's folded edges, where a ray has two points.
         const int rim = c.spacing == PixelSpacing::centers ? 1 : 0;
@@ -414,7 +475,7 @@ TEST(ProjectionOracle, ExactPixelsBesideAPoleHoldTheirBounds) {
         PlanOptions options;
         options.scheme = Scheme::exact;
         const PanoramaPlan plan(map, options);
-        const Vector local = Oracle(target, static_cast<Real>(c.d)).ray(v.x + 0.5L, v.y + 0.5L);
+        const Vector local = Oracle(target).ray(v.x + 0.5L, v.y + 0.5L);
         const oracle::Vector ray = oracle::rotated({local.x, local.y, local.z}, v.look);
         const Plane truth{azimuth_of({ray.x, ray.y, ray.z}) / (2 * kPi) * 16384 + 8192,
                           elevation_of({ray.x, ray.y, ray.z}) / kPi * 8192 + 4096};

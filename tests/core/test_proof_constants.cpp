@@ -38,9 +38,17 @@ Quad cosine(Quad angle) {
     return power_series(angle, 0);
 }
 
+/// By Newton's method from long double's.
+Quad square_root(Quad value) {
+    const Quad near = std::sqrt(static_cast<long double>(value));
+    return (near + value / near) / 2;
+}
+
 /// What a field of view covers, of its projection's definition.
-Quad width_of(Projection projection, double degrees, double d) {
-    const Quad angle = Quad(degrees) * kQuadPi / 180;
+Quad width_of(Projection projection, double degrees, const Distance& numbers) {
+    const Quad angle = Quad(degrees) * kQuadPi / 180, d = numbers.d, e = numbers.e;
+    // Sine and cosine of half of it, which is up to a half turn, by those of a quarter.
+    const Quad quarter = cosine(angle / 4), s = 2 * sine(angle / 4) * quarter, c = 2 * quarter * quarter - 1;
     switch (projection) {
         case Projection::rectilinear:
             return 2 * sine(angle / 2) / cosine(angle / 2);
@@ -55,10 +63,13 @@ Quad width_of(Projection projection, double degrees, double d) {
             // k = sqrt(2 / (1 + cos(a / 2))) = 1 / cos(a / 4), at a of half the field of view.
             return 4 * sine(angle / 4) / cosine(angle / 8);
         case Projection::pannini:
-        case Projection::unified: {
-            // cos of up to a half turn, by the half's.
-            const Quad half = cosine(angle / 4);
-            return 2 * (Quad(d) + 1) * (2 * sine(angle / 4) * half) / (Quad(d) + (2 * half * half - 1));
+        case Projection::unified:
+            return 2 * (d + 1) * s / (d + c);
+        case Projection::eucm:
+            return 2 * s / (e * square_root(d * s * s + c * c) + (1 - e) * c);
+        case Projection::double_sphere: {
+            const Quad w = c + d;
+            return 2 * (1 + d) * s / (e * square_root(s * s + w * w) + (1 - e) * w);
         }
         case Projection::cubemap:
         case Projection::cubemap3x2:
@@ -73,8 +84,8 @@ Quad width_of(Projection projection, double degrees, double d) {
 }
 
 /// How far pixels per unit of a plane, or their inverse, are off, in units of long double.
-double units_off(const Chart& chart, double pixels, double d) {
-    const Quad width = width_of(chart.projection(), chart.fov(), d);
+double units_off(const Chart& chart, double pixels) {
+    const Quad width = width_of(chart.projection(), chart.fov(), chart.distance());
     const Quad off[] = {Quad(chart.pixels_per_unit().precise()) * width / pixels - 1,
                         Quad(chart.units_per_pixel().precise()) * pixels / width - 1};
     double most = 0;
@@ -82,10 +93,17 @@ double units_off(const Chart& chart, double pixels, double d) {
     return most;
 }
 
-double most_units(Projection projection, double fov, double d) {
+double most_units(Projection projection, double fov, const Distance& d) {
     Setting setting;
     setting.distance = d;
     return with_projection(projection, [&](auto formulas) { return formulas.width_units(fov, setting); });
+}
+
+/// Numbers that a projection may have, of two between 0 and 1.
+Distance numbers_for(Projection projection, double a, double b) {
+    if (projection == Projection::eucm) return {std::exp(4 * b - 2), a};
+    if (projection == Projection::double_sphere) return {1.9 * b - 0.95, a};
+    return numbers_of(projection) > 0 ? std::exp(6 * a - 3) : 1;
 }
 
 TEST(ProofConstants, WidthsOfPlanesAreAsWellKnownAsTheySay) {
@@ -99,7 +117,8 @@ TEST(ProofConstants, WidthsOfPlanesAreAsWellKnownAsTheySay) {
         const FaceGrid faces = faces_of(projection);
         double nearest = 0;
         for (int i = 0; i < 2000; ++i) {
-            const double d = has_distance(projection) ? std::exp(6 * uniform(random) - 3) : 1;
+            const double a = uniform(random), b = uniform(random);
+            const Distance d = numbers_for(projection, a, b);
             Setting setting;
             setting.distance = d;
             const double most = with_projection(
@@ -114,8 +133,8 @@ TEST(ProofConstants, WidthsOfPlanesAreAsWellKnownAsTheySay) {
                               centers ? PixelSpacing::centers : PixelSpacing::edges, "", d);
             // Between the centres of the outer pixels of a face, or of two that are joined.
             const double pixels = !centers ? n : faces.joined ? n - 0.5 : n - 1;
-            const double units = units_off(chart, pixels, d), allowed = most_units(projection, fov, d);
-            EXPECT_LE(units, allowed) << name_of(projection) << " " << fov << " " << d;
+            const double units = units_off(chart, pixels), allowed = most_units(projection, fov, d);
+            EXPECT_LE(units, allowed) << name_of(projection) << " " << fov << " " << d.d << " " << d.e;
             nearest = std::max(nearest, units / allowed);
         }
         RecordProperty(std::string(name_of(projection)), std::to_string(nearest));

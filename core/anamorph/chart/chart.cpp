@@ -49,12 +49,7 @@ Length height_of(Projection projection, double degrees, const Setting& setting) 
     const long double s = std::sin(half), c = degrees == 180 ? 0 : std::cos(half);
     using R = Rounded<long double>;
     // The angle is off by 3 units of it, at most pi, and libm by 8 of what it gives (Rounded::kLibm).
-    const auto rounded = [](long double value) {
-        const double error = 18 * R::kUnit, at = static_cast<double>(value);
-        R r = R::near(at, error + 0x1p-53 * std::fabs(at));
-        r.error = error;
-        return r;
-    };
+    const auto rounded = [](long double value) { return projection::known_to(value, 18 * R::kUnit); };
     return with_projection(projection, [&](auto formulas) -> Length {
         const long double z = formulas.looks_back ? -c : c;
         const Point<long double> p = formulas.point(Ray<long double>{0, -s, z}, setting);
@@ -139,22 +134,22 @@ bool rows_turn(Projection projection) {
         projection, [](auto formulas) { return formulas.counted == Counted::azimuth && formulas.closes; });
 }
 
-bool has_distance(Projection projection) {
-    return with_projection(projection, [](auto formulas) { return formulas.has_distance; });
+int numbers_of(Projection projection) {
+    return with_projection(projection, [](auto formulas) { return formulas.numbers; });
 }
 
 double Chart::default_fov(Projection projection) {
     return fov_of(projection).standard;
 }
 
-double plane_width(Projection projection, double fov, double d) {
+double plane_width(Projection projection, double fov, const Distance& d) {
     Setting setting;
     setting.distance = d;
     const long double width =
         with_projection(projection, [&](auto formulas) { return formulas.width(fov, setting); });
     return std::isfinite(width) && width > 0 ? static_cast<double>(width) : 0;
 }
-double plane_height(Projection projection, double vfov, double d) {
+double plane_height(Projection projection, double vfov, const Distance& d) {
     if (has_faces(projection) || !(vfov > 0 && vfov <= most_vfov(projection))) return 0;
     Setting setting;
     setting.distance = d;
@@ -179,7 +174,7 @@ double or_endless(double length) {
 
 }  // namespace
 
-double fov_of_plane_width(Projection projection, double width, double d) {
+double fov_of_plane_width(Projection projection, double width, const Distance& d) {
     Setting setting;
     setting.distance = d;
     const double most = with_projection(
@@ -187,13 +182,14 @@ double fov_of_plane_width(Projection projection, double width, double d) {
     const auto function = [&](double fov) { return or_endless(plane_width(projection, fov, d)); };
     return where_it_reaches(function, width, most);
 }
-double vfov_of_plane_height(Projection projection, double height, double d) {
+double vfov_of_plane_height(Projection projection, double height, const Distance& d) {
     const auto function = [&](double vfov) { return or_endless(plane_height(projection, vfov, d)); };
     return where_it_reaches(function, height, most_vfov(projection));
 }
 
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
-             const std::string& prefix, double d, const LensModel& lens, const VerticalField& vertical)
+             const std::string& prefix, const Distance& d, const LensModel& lens,
+             const VerticalField& vertical)
     : m_projection(projection),
       m_width(width),
       m_height(height),
@@ -203,9 +199,8 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
         throw Error(size_name(prefix), size, "must be 1x1 to 16777216x16777216 pixels");
-    if (!(d >= 0 && d <= kMostDistance))
-        throw Error(prefix + "d", brief(d), "must be from 0 to " + brief(kMostDistance));
     m_setting.distance = d;
+    check_numbers(prefix);
     if (m_fov == 0) m_fov = default_fov(projection);
     check_fov(projection, m_fov, m_setting, prefix + "fov");
     if (faces_of(projection).columns > 0)
@@ -217,14 +212,28 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     set_branches();
 }
 
+void Chart::check_numbers(const std::string& prefix) const {
+    with_projection(m_projection, [&](auto formulas) {
+        const std::string of =
+            formulas.numbers > 0 ? " for " + std::string(name_of(m_projection)) : std::string();
+        const auto check = [&](const char* name, double value, double least, double most) {
+            if (!(value >= least && value <= most))
+                throw Error(prefix + name, brief(value),
+                            "must be from " + brief(least) + " to " + brief(most) + of);
+        };
+        check("d", m_setting.distance.d, formulas.least_d, formulas.most_d);
+        check("e", m_setting.distance.e, 0, 1);
+    });
+}
+
 void Chart::check_vertical(const std::string& prefix, const LensModel& lens) const {
     const double vfov = m_vertical.fov;
     const std::string parameter = prefix + "vfov", name(name_of(m_projection));
     if (vfov != 0 && (m_pieces.size() > 1 || fov_of(m_projection).fixed))
         throw Error(parameter, brief(vfov), name + " has none but its own");
-    if (vfov != 0 && plane_height(m_projection, vfov, m_setting.distance.d) == 0) {
+    if (vfov != 0 && plane_height(m_projection, vfov, m_setting.distance) == 0) {
         const double most = most_vfov(m_projection);
-        const bool is_open = plane_height(m_projection, most, m_setting.distance.d) == 0;
+        const bool is_open = plane_height(m_projection, most, m_setting.distance) == 0;
         throw Error(parameter, brief(vfov),
                     "must be above 0 and " + std::string(is_open ? "below " : "up to ") + brief(most) +
                         " degrees for " + name);
@@ -310,20 +319,21 @@ void Chart::set_branches() {
 Chart Chart::resized(int width, int height) const {
     VerticalField vertical = m_vertical;
     if (vertical.horizon) *vertical.horizon *= static_cast<double>(height) / m_height;
-    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance.d, {}, vertical);
+    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance, {}, vertical);
     chart.m_lens = m_lens;
     return chart;
 }
 
 double Chart::pixels_per_radian() const {
-    return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *
+    return scale_x() * (m_lens ? m_lens->magnification() : 1) *
            with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
 }
 
 double Chart::widest() const {
     const double diameter =
-        m_lens ? 2 * m_lens->reach()
-               : with_projection(m_projection, [](auto formulas) -> double { return formulas.diameter; });
+        m_lens ? 2 * m_lens->reach() : with_projection(m_projection, [&](auto formulas) -> double {
+            return formulas.diameter(m_setting);
+        });
     return diameter * std::max(scale_x(), scale_y()) * 1.25;
 }
 

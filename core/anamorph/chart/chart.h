@@ -72,19 +72,20 @@ inline bool has_faces(Projection projection) {
 }
 /// Are the rows of a projection's picture circles around the vertical axis, and those of 360 degrees closed?
 bool rows_turn(Projection projection);
-/// Does a projection's picture depend on the distance d?
-bool has_distance(Projection projection);
+/// How many numbers a projection's picture depends on: none, d, or d and e.
+int numbers_of(Projection projection);
 /// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
 /// The width of the plane that a horizontal field of view in degrees covers, in radians, tangents and so on, as the projection's formulas
-/// have it. 0 where there is none. `d`: the distance of the Pannini projection and of the unified model.
-double plane_width(Projection projection, double fov, double d = 1);
-double plane_height(Projection projection, double vfov, double d = 1);  ///< The height, of a vertical one.
+/// have it. 0 where there is none. `d`: the numbers of projections that have some.
+double plane_width(Projection projection, double fov, const Distance& d = {});
+double plane_height(Projection projection, double vfov,
+                    const Distance& d = {});  ///< The height, of a vertical one.
 /// The horizontal field of view that covers a width of the plane, at most what the projection shows.
-double fov_of_plane_width(Projection projection, double width, double d = 1);
+double fov_of_plane_width(Projection projection, double width, const Distance& d = {});
 double vfov_of_plane_height(Projection projection, double height,
-                            double d = 1);  ///< The vertical one, of a height.
+                            const Distance& d = {});  ///< The vertical one, of a height.
 
 /// How a picture lies in its projection's plane from top to bottom.
 struct VerticalField {
@@ -113,15 +114,15 @@ struct Branch : Setting {
 /// A flat picture of directions: a projection, its field of view and its pixels.
 class Chart {
   public:
-    /// The largest value of d.
-    static constexpr double kMostDistance = 1000;
+    /// The least and the largest value of d of any projection; e is from 0 to 1.
+    static constexpr double kLeastDistance = -0.999, kMostDistance = 1000;
 
     /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
-    /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `vertical`: only of images that
-    /// are one piece, and a horizon only of those without a lens. `prefix` is put before "fov", "vfov", "size", "d" and "lens" in
-    /// errors, and "src" before "size" is "source ". Throws Error on a value out of range.
+    /// takes the projection's default (default_fov). `d`: the numbers of projections that have some. `vertical`: only of images that
+    /// are one piece, and a horizon only of those without a lens. `prefix` is put before "fov", "vfov", "size", "d", "e" and "lens"
+    /// in errors, and "src" before "size" is "source ". Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
-          PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
+          PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", const Distance& d = {},
           const LensModel& lens = {}, const VerticalField& vertical = {});
 
     /// The horizontal field of view that a chart of this projection has unless it is given one, in degrees.
@@ -135,8 +136,8 @@ class Chart {
     int height() const { return m_height; }
     double fov() const { return m_fov; }
     const VerticalField& vertical() const { return m_vertical; }
-    /// The distance d of the Pannini projection and of the unified model.
-    double distance() const { return m_setting.distance.d; }
+    /// The numbers of projections that have some.
+    const Distance& distance() const { return m_setting.distance; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
     /// The lens; null where there is none, as in most pictures.
@@ -242,6 +243,7 @@ class Chart {
     template <class T>
     Point<T> to_plane(const T& x, const T& y, const Branch& branch) const;
 
+    void check_numbers(const std::string& prefix) const;
     void check_vertical(const std::string& prefix, const LensModel& lens) const;
     void set_scale(const std::string& prefix, const LensModel& lens);
     void set_branches();

@@ -29,10 +29,12 @@ const std::vector<KindOfLens>& kinds() {
     static const std::vector<KindOfLens> all = {
         {none, "none", {}},
         {ptlens, "ptlens", {"a", "b", "c", "d", "e"}},
-        {brown, "brown", {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "d", "e"}},
+        {brown, "brown", {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "s1", "s2", "s3", "s4", "d", "e"}},
         {three_de4, "3de4", {"k1", "k2", "d", "e"}},
         {kb4, "kb4", {"k1", "k2", "k3", "k4", "d", "e"}},
-        {division, "division", {"k1", "k2", "d", "e"}}};
+        {division, "division", {"k1", "k2", "d", "e"}},
+        {poly, "poly", {"k0", "k1", "k2", "k3", "k4", "d", "e"}},
+        {ocam, "ocam", {"a0", "a2", "a3", "a4", "d", "e"}}};
     return all;
 }
 const KindOfLens& kind_of(LensModel::Kind kind) {
@@ -53,13 +55,19 @@ double magnitude_of(const Constant* c, int count, double t) {
     return sum;
 }
 
+/// What errors below the line are held against: the polynomial, or of a direction its length.
+Interval below_the_line(const LensTerms& lens, const Interval& t) {
+    const Interval sum = lens_formula::sum_of_powers(lens.under, lens.under_count, t);
+    return lens.of_direction ? sqrt(square(sum) + (lens.in_radius ? square(t) : t)) : sum;
+}
+
 /// How much the radial part stretches the least, along the radius or across it, over all of these t; less than nothing
 /// where a pole is near.
 double least_stretch(const LensTerms& lens, const Interval& t) {
     using S = Series<Interval, 1>;
     const S at = S::variable(t);
-    if (lens.under_count > 1) {
-        const Interval under = lens_formula::sum_of_powers(lens.under, lens.under_count, t);
+    if (lens.under_count > 1 || lens.of_direction) {
+        const Interval under = below_the_line(lens, t);
         if (!(under.lo > 0x1p-40 * magnitude_of(lens.under, lens.under_count, t.hi))) return -1;
     }
     const S stretch = lens_formula::stretch_at(lens, at);
@@ -67,9 +75,11 @@ double least_stretch(const LensTerms& lens, const Interval& t) {
     return stretch.c[0].lo > 0 && slope.lo > 0 ? std::min(stretch.c[0].lo, slope.lo) : -1;
 }
 
-/// How much the tangential part stretches the most, up to t: its slope is 2 (m.u) + 2 (u m^T + m u^T).
+/// How much the part that is not radial stretches the most, up to t: its slope is 2 (m.u) + 2 (u m^T + m u^T), and
+/// 2 (a + 2 b r^2) u^T of a prism.
 double most_tangential(const LensTerms& lens, double t) {
-    return 6 * std::hypot(lens.mx, lens.my) * std::sqrt(t) * (1 + 8 * interval_detail::kUlp);
+    const double r = std::sqrt(t), a = std::hypot(lens.ax, lens.ay), b = std::hypot(lens.bx, lens.by);
+    return (6 * std::hypot(lens.mx, lens.my) * r + (2 * a + 4 * b * t) * r) * (1 + 8 * interval_detail::kUlp);
 }
 
 }  // namespace
@@ -125,7 +135,13 @@ std::string LensModel::text() const {
 }
 
 double LensModel::magnification() const {
-    return kind == Kind::ptlens ? 1 - values[0] - values[1] - values[2] : 1;
+    return kind == Kind::ptlens ? 1 - values[0] - values[1] - values[2]
+           : kind == Kind::poly ? 1 + values[0]
+                                : 1;
+}
+double Lens::magnification() const {
+    return m_terms.of_direction ? 2 * m_terms.under[0].value() / m_terms.over[0].value()
+                                : m_model.magnification();
 }
 
 Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
@@ -134,17 +150,24 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     using enum LensModel::Kind;
     if (lensed == Lensed::no)
         throw Error(parameter, model.text(), "must be none for " + projection + ", which has no lens");
-    if ((model.kind == brown && lensed != Lensed::flat) ||
-        (model.kind == kb4 && lensed != Lensed::equidistant))
-        throw Error(parameter, model.text(),
-                    kind_of(model.kind).name + " must be of a " +
-                        (model.kind == brown ? "rectilinear" : "fisheye") + " picture, not " + projection);
+    const auto belongs_to = [&](LensModel::Kind kind, Lensed picture, const char* name) {
+        if (model.kind == kind && lensed != picture)
+            throw Error(parameter, model.text(),
+                        kind_of(kind).name + " must be of a " + name + " picture, not " + projection);
+    };
+    belongs_to(brown, Lensed::flat, "rectilinear");
+    belongs_to(kb4, Lensed::equidistant, "fisheye");
+    belongs_to(ocam, Lensed::stereographic, "stereographic");
     set_terms();
     const long double smaller = std::min(plane.half_width, plane.half_height);
     const bool by_diagonal = model.kind == three_de4 || model.kind == division;
-    const long double unit = model.kind == ptlens ? smaller
+    const bool by_side = model.kind == ptlens || model.kind == poly;
+    const long double unit = by_side              ? smaller
                              : by_diagonal        ? std::hypot(plane.half_width, plane.half_height)
+                             : model.kind == ocam ? plane.per_x
                                                   : 1;
+    // Twice the tangent of half of the angle, in pixels.
+    if (model.kind == ocam) m_terms.over[0] = Constant(2 / plane.per_x);
     const long double d = model.values[model.values.size() - 2] * plane.per_x,
                       e = model.values[model.values.size() - 1] * plane.per_y;
     m_terms.unit = unit == 1 ? Constant(1, 0) : Constant(unit);
@@ -208,7 +231,38 @@ void Lens::set_terms() {
         terms.under_count = powers(terms.under, 3, 3);
         terms.mx = v[7];
         terms.my = v[6];
-        terms.tangential = terms.mx != 0 || terms.my != 0;
+        terms.ax = v[8];
+        terms.bx = v[9];
+        terms.ay = v[10];
+        terms.by = v[11];
+        terms.prism = std::any_of(v.begin() + 8, v.begin() + 12, [](double s) { return s != 0; });
+        terms.tangential = terms.mx != 0 || terms.my != 0 || terms.prism;
+    } else if (m_model.kind == poly) {
+        // A sum, rounded, of no more than both.
+        const long double k0 = v[0];
+        terms.over[0] =
+            Constant(1 + k0, Rounded<long double>::kUnit * static_cast<double>(1 + std::fabs(k0)));
+        // Then only r^2 is needed, which is smooth at the centre.
+        terms.in_radius = v[1] != 0 || v[3] != 0;
+        if (terms.in_radius) {
+            terms.over_count = powers(terms.over, 1, 4);
+        } else {
+            terms.over[1] = exact(v[2]);
+            terms.over[2] = exact(v[4]);
+            terms.over_count = v[4] != 0 ? 3 : v[2] != 0 ? 2 : 1;
+        }
+    } else if (m_model.kind == ocam) {
+        // The axis is in front: what is ahead in the middle is positive.
+        const double sign = v[0] < 0 ? -1 : 1;
+        terms.to_observed = false;
+        terms.of_direction = true;
+        terms.in_radius = v[2] != 0;
+        const double powers_of_r[5] = {v[0], 0, v[1], v[2], v[3]};
+        const int step = terms.in_radius ? 1 : 2;
+        for (int i = 0; i < 5; i += step) {
+            terms.under[i / step] = exact(sign * powers_of_r[i]);
+            if (powers_of_r[i] != 0) terms.under_count = i / step + 1;
+        }
     } else if (m_model.kind == division) {
         terms.to_observed = false;
         terms.under_count = powers(terms.under, 0, 2);
@@ -246,21 +300,27 @@ bool Lens::set_ends(double corner) {
     constexpr double kLess = 1 - 0x1p-40;
     const double argument = kLess * (terms.in_radius ? at : std::sqrt(at));
     double value = kLess * (terms.in_radius ? terms.value_end : std::sqrt(terms.value_end));
-    // Wherever |u| is the end's, |F| is at least that less 3 |m| |u|^2.
+    // Wherever |u| is the end's, |F| is at least that less (3 |m| + |a| + |b| |u|^2) |u|^2.
     value -= (1 + 0x1p-40) * 3 * std::hypot(terms.mx, terms.my) * argument * argument;
+    const double a = std::hypot(terms.ax, terms.ay), b = std::hypot(terms.bx, terms.by);
+    value -= (1 + 0x1p-40) * (a + b * argument * argument) * argument * argument;
     terms.ideal_end = terms.to_observed ? argument : value;
     terms.observed_end = terms.to_observed ? value : argument;
-    const double centre = terms.over[0].value();
+    const double centre = terms.of_direction ? lens_formula::stretch_at(terms, 0.0) : terms.over[0].value();
     terms.slope = terms.in_radius ? 1 / centre : 1 / (centre * centre);
     return folds;
 }
 
 // Rounding of radial_at() in Real, with u its unit, N = sum |c_i| t^i, D the same below the line and d what is below the
 // line. The constants over the line are off by 3 u and 1 u of N (1 - a - b - c of ptlens counts with 1 + |a| + |b| + |c|
-// in N; all others are exact in double), Horner's rule by 2 u for each of 4 degrees: 13 u N in all; below the line by
+// in N, and 1 + k0 of poly with 1 + |k0|; all others are exact in double), Horner's rule by 2 u for each of 4 degrees: 13 u N in all; below the line by
 // 7 u D. Then S is off by (13 u N + S 7 u D) / d + u S, at most 14 u A with A = (N + S D) / d; t S by 15 u t A, and
 // t S^2 by (2 * 14 + 2) u t A^2. With condition >= A / S or (A / S)^2 that is kOff; terms of second order are below 2 u
 // as long as D / d is below 2^40.
+//
+// Of a direction, g below the line is off by 9 u D, D the sum of its magnitudes: its coefficients are exact. Its length n then is
+// by 9 u D and 3 u n, and both together, |g| + n, by 18 u D + 4 u (|g| + n), of which n is a part; t^2 over them by 2 u more, and S by
+// (18 D / n + 8) u S. With 2 D / n + 1 in place of A / S the rest holds as it stands.
 //
 // Where the iteration's bracket has come down to neighbours, 2 u t apart, their exact values differ by 2 u t times the
 // slope, and the computed ones by 2 kOff more: within kResidual where the condition is at least t slope / 8 over the
@@ -272,9 +332,11 @@ double Lens::condition_over(const Interval& t) const {
     if (m_model.kind == LensModel::Kind::ptlens)
         over +=
             1 + std::fabs(m_model.values[0]) + std::fabs(m_model.values[1]) + std::fabs(m_model.values[2]);
-    const Interval below = lens_formula::sum_of_powers(terms.under, terms.under_count, t);
+    if (m_model.kind == LensModel::Kind::poly) over += 1 + std::fabs(m_model.values[0]);
+    const Interval below = below_the_line(terms, t);
     const double under = magnitude_of(terms.under, terms.under_count, t.hi);
-    const double ratio = (over + stretch.c[0].hi * under) / below.lo / stretch.c[0].lo;
+    const double ratio = terms.of_direction ? 2 * under / below.lo + 1
+                                            : (over + stretch.c[0].hi * under) / below.lo / stretch.c[0].lo;
     const double steep = 1 + 2 * magnitude(stretch.c[1] * t / stretch.c[0]);
     return std::max(terms.in_radius ? ratio : ratio * ratio, steep / 8) * (1 + 0x1p-40);
 }

@@ -8,14 +8,20 @@
 //   ptlens   ideal to observed, v = u (a r^3 + b r^2 + c r + 1 - a - b - c); PanoTools and Hugin. Unit: half of the
 //            picture's smaller side. For projections with an axis.
 //   brown    ideal to observed, v = u (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
-//            + (2 p1 x y + p2 (r^2 + 2 x^2), p1 (r^2 + 2 y^2) + 2 p2 x y); Brown 1966, OpenCV. Unit: the focal
-//            length. For rectilinear pictures.
+//            + (2 p1 x y + p2 (r^2 + 2 x^2), p1 (r^2 + 2 y^2) + 2 p2 x y) + (s1 r^2 + s2 r^4, s3 r^2 + s4 r^4);
+//            Brown 1966 with a thin prism (Weng, Cohen and Herniou 1992), OpenCV. Unit: the focal length. For rectilinear
+//            pictures.
 //   3de4     observed to ideal, v = u (1 + k1 r^2 + k2 r^4); 3DEqualizer4's radial model of degree 4 without
 //            decentering. Unit: half of the picture's diagonal. For projections with an axis.
 //   kb4      ideal to observed, r = t the angle from the axis, v = u (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8); Kannala
 //            and Brandt 2006, OpenCV's fisheye. Unit: the focal length. For equidistant fisheyes.
 //   division observed to ideal, v = u / (1 + k1 r^2 + k2 r^4); Fitzgibbon 2001 with k1 alone. Unit: half of the picture's
 //            diagonal. For projections with an axis.
+//   poly     ideal to observed, v = u (1 + k0 + k1 r + k2 r^2 + k3 r^3 + k4 r^4), which magnifies by 1 + k0 at the centre: what
+//            the models of Lensfun are. Unit: half of the picture's smaller side. For projections with an axis.
+//   ocam     observed to ideal, where r pixels are seen at the angle atan2(r, g), g = |a0 + a2 r^2 + a3 r^3 + a4 r^4| with the
+//            sign that it has where a0 is positive: v = u 2 / (g + sqrt(g^2 + r^2)); Scaramuzza, Martinelli and Siegwart 2006,
+//            OCamCalib without its affine part. For stereographic pictures; whatever their field of view, a0 is the focal length.
 //
 // The lens's centre stands d pixels right of the picture's middle and e below it; the axis of sight meets the plane
 // there. The focal length is that of the field of view without distortion.
@@ -43,7 +49,7 @@ namespace anamorph {
 /// A model of lens distortion and its parameters.
 struct LensModel {
     /// The models described at the head of this file.
-    enum class Kind { none, ptlens, brown, three_de4, kb4, division };
+    enum class Kind { none, ptlens, brown, three_de4, kb4, division, poly, ocam };
     Kind kind = Kind::none;
     /// The values of the model, in the order of names().
     std::vector<double> values;
@@ -55,7 +61,7 @@ struct LensModel {
     std::string text() const;
     /// The names of a model's parameters.
     static const std::vector<std::string>& names(Kind kind);
-    /// How much larger the observed picture is than the ideal one, at the centre.
+    /// How much larger the observed picture is than the ideal one, at the centre; of ocam that is Lens::magnification().
     double magnification() const;
 };
 
@@ -74,10 +80,13 @@ struct LensTerms {
 
     /// Is S a polynomial in r, not in r^2?
     bool in_radius = false;
-    bool tangential = false;
-    double mx = 0, my = 0;
-    Constant over[5], under[4];
+    /// Is there a part that is not radial (tangential_at())? Then `m`, the tangential one, and of a thin prism `a` and `b`.
+    bool tangential = false, prism = false;
+    double mx = 0, my = 0, ax = 0, ay = 0, bx = 0, by = 0;
+    Constant over[5], under[5];
     int over_count = 1, under_count = 1;
+    /// Is what is below the line g the component ahead of a direction that is r across, and S over / (g + sqrt(g^2 + r^2))?
+    bool of_direction = false;
 
     /// The largest distances of the ideal and of the observed points from the centre, in the model's unit.
     double ideal_end = 0, observed_end = 0;
@@ -187,6 +196,8 @@ class Lens {
 
     const LensModel& model() const { return m_model; }
     const LensTerms& terms() const { return m_terms; }
+    /// How much larger the observed picture is than the ideal one, at the centre.
+    double magnification() const;
 
     /// The ideal point of an observed one; valid where inside() is not negative.
     template <class T>
@@ -272,7 +283,7 @@ J compose(const lens_formula::Series<T, N>& series, const J& n) {
 /// The largest row sum of the matrix `slope`, of whose entries `of` gives the magnitudes.
 template <class T, class Of>
 double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
-    return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
+    return std::max(of(slope.xx) + of(slope.xy), of(slope.yy) + of(slope.yx));
 }
 
 /// settled() of numbers without jets.
@@ -320,7 +331,13 @@ template <class R>
 double most_tangential(const LensTerms& lens, const Point<R>& u) {
     const double x = u.x.computed_size(), y = u.y.computed_size();
     const double mx = std::fabs(lens.mx), my = std::fabs(lens.my);
-    return (2 * (mx * x + my * y) + 4 * std::max(mx * x, my * y) + 2 * (my * x + mx * y)) * (1 + 0x1p-40);
+    const double most = 2 * (mx * x + my * y) + 4 * std::max(mx * x, my * y) + 2 * (my * x + mx * y);
+    // A thin prism's slope is 2 (a + 2 b r^2) u^T.
+    const double squared = x * x + y * y;
+    const double prism = 2 * (x + y) *
+                         std::max(std::fabs(lens.ax) + 2 * std::fabs(lens.bx) * squared,
+                                  std::fabs(lens.ay) + 2 * std::fabs(lens.by) * squared);
+    return (most + prism) * (1 + 0x1p-40);
 }
 
 /// settled() of jets v, where u is the result for their constant parts and nearer() maps `jet` into itself for all of

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lens's distortion in its own units, about its own centre: F(u) = (S + 2 m.u) u + |u|^2 m, with S a polynomial in
-// r = |u| or r^2, or a quotient of two, and m = (p2, p1), the tangential part (Brown 1966), of one model only. What
-// the models are is said in chart/lens.h.
+// A lens's distortion in its own units, about its own centre: F(u) = (S + 2 m.u) u + |u|^2 m + |u|^2 a + |u|^4 b, with S a
+// polynomial in r = |u| or r^2, or a quotient of two; of one model only, m = (p2, p1), the tangential part (Brown 1966), and
+// a = (s1, s3), b = (s2, s4), a thin prism. What the models are is said in chart/lens.h.
 //
 // No include guard and no namespace: vectors need the templates compiled for each instruction set, so whoever reads
 // them includes this file inside a namespace of his own (chart/lens.h, panorama/panorama_rows_lanes.cpp), where somewhere(condition)
@@ -32,6 +32,12 @@ Series<T, N> operator+(const Series<T, N>& a, const Series<T, N>& b) {
     return s;
 }
 template <class T, int N>
+Series<T, N> operator-(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> s;
+    for (int k = 0; k <= N; ++k) s.c[k] = a.c[k] - b.c[k];
+    return s;
+}
+template <class T, int N>
 Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
     Series<T, N> s;
     for (int k = 0; k <= N; ++k) {
@@ -52,6 +58,41 @@ Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
     return q;
 }
 
+/// What formulas of numbers are to series: a root, r_0 r_k = (a_k - sum_(0<j<k) r_j r_(k-j)) / 2, and a choice by the constant part.
+template <class T>
+T root_of(const T& a) {
+    return sqrt(a);
+}
+template <class T, int N>
+Series<T, N> root_of(const Series<T, N>& a) {
+    Series<T, N> r(sqrt(a.c[0]));
+    for (int k = 1; k <= N; ++k) {
+        T rest = a.c[k];
+        for (int j = 1; j < k; ++j) rest = rest - r.c[j] * r.c[k - j];
+        r.c[k] = rest / (r.c[0] * 2.0);
+    }
+    return r;
+}
+template <class T>
+T choose_if_negative(const T& a, const T& then, const T& otherwise) {
+    return select(is_negative(a), then, otherwise);
+}
+template <class T, int N>
+Series<T, N> choose_if_negative(const Series<T, N>& a, const Series<T, N>& then,
+                                const Series<T, N>& otherwise) {
+    const auto negative = is_negative(a.c[0]);
+    Series<T, N> s;
+    for (int k = 0; k <= N; ++k) s.c[k] = select(negative, then.c[k], otherwise.c[k]);
+    return s;
+}
+
+/// The sum g + sqrt(g^2 + t^2) by the square of t, without cancellation where g is negative.
+template <class T>
+T add_length(const T& g, const T& squared) {
+    const T n = root_of(T(g * g + squared)), size = choose_if_negative(g, T(T(0) - g), g);
+    return choose_if_negative(g, T(squared / (n + size)), T(n + g));
+}
+
 /// A constant as a factor of a number, or of a series of numbers.
 template <class T>
 auto read_constant(const Constant& k, const T&) {
@@ -70,10 +111,14 @@ T sum_of_powers(const Constant* c, int count, const T& t) {
     return sum;
 }
 
-/// The factor S at t, with t = r where the polynomials are in r, else r^2.
+/// The factor S (of a direction, chart/lens.h) at t, with t = r where the polynomials are in r, else r^2.
 template <class T>
 T stretch_at(const LensTerms& lens, const T& t) {
     const T over = sum_of_powers(lens.over, lens.over_count, t);
+    if (lens.of_direction) {
+        const T ahead = sum_of_powers(lens.under, lens.under_count, t);
+        return over / add_length(ahead, lens.in_radius ? T(t * t) : t);
+    }
     if (lens.under_count == 1) return over;
     return over / sum_of_powers(lens.under, lens.under_count, t);
 }
@@ -100,15 +145,20 @@ T stretch_of(const LensTerms& lens, const Point<T>& u) {
     return stretch_at(lens, radial_of(lens, u));
 }
 
-/// The tangential part of F; `squared` is the square of the distance from the centre.
+/// What a thin prism adds to a point; `squared` is the square of its distance from the centre.
 template <class T>
-Point<T> tangential_at(const LensTerms& lens, const Point<T>& u, const T& squared) {
-    const T along = (u.x * lens.mx + u.y * lens.my) * 2.0;
-    return {u.x * along + squared * lens.mx, u.y * along + squared * lens.my};
+Point<T> through_prism(const LensTerms& lens, const Point<T>& p, const T& squared) {
+    if (!lens.prism) return p;
+    const T fourth = square(squared);
+    return {p.x + squared * lens.ax + fourth * lens.bx, p.y + squared * lens.ay + fourth * lens.by};
 }
+
+/// The part of F that is not radial.
 template <class T>
 Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
-    return tangential_at(lens, u, T(square(u.x) + square(u.y)));
+    const T squared = square(u.x) + square(u.y), along = (u.x * lens.mx + u.y * lens.my) * 2.0;
+    return through_prism(lens, Point<T>{u.x * along + squared * lens.mx, u.y * along + squared * lens.my},
+                         squared);
 }
 
 /// The distorted point F(u). For lenses with a tangential part S is a function of r^2.
@@ -120,7 +170,8 @@ Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
     }
     const T squared = square(u.x) + square(u.y), along = (u.x * lens.mx + u.y * lens.my) * 2.0;
     const T stretch = stretch_at(lens, squared) + along;
-    return {u.x * stretch + squared * lens.mx, u.y * stretch + squared * lens.my};
+    return through_prism(lens, Point<T>{u.x * stretch + squared * lens.mx, u.y * stretch + squared * lens.my},
+                         squared);
 }
 
 /// The unit roundoff of T, relative to the number; 0 where it is not known.
@@ -222,11 +273,11 @@ Point<T> nearer(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
     return radially_undistorted(lens, Point<T>{v.x - more.x, v.y - more.y});
 }
 
-/// The derivative of F, a symmetric matrix: S + 2 m.u along the diagonal, 2 S' u u^T with S' by |u|^2, and
-/// 2 (u m^T + m u^T).
+/// The derivative of F: a symmetric matrix, S + 2 m.u along the diagonal, 2 S' u u^T with S' by |u|^2, and
+/// 2 (u m^T + m u^T); and of a prism 2 (a + 2 b |u|^2) u^T.
 template <class T>
 struct Slope {
-    T stretch, xx, xy, yy, determinant;
+    T stretch, xx, xy, yx, yy, determinant;
 
     Slope(const LensTerms& lens, const Point<T>& u) {
         const T squared = square(u.x) + square(u.y);
@@ -236,11 +287,22 @@ struct Slope {
         xx = along + (series.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
         yy = along + (series.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
         xy = (series.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
-        determinant = xx * yy - square(xy);
+        yx = xy;
+        if (!lens.prism) {
+            determinant = xx * yy - square(xy);
+            return;
+        }
+        const T along_x = (squared * (2.0 * lens.bx) + lens.ax) * 2.0,
+                along_y = (squared * (2.0 * lens.by) + lens.ay) * 2.0;
+        xx = xx + along_x * u.x;
+        xy = xy + along_x * u.y;
+        yx = yx + along_y * u.x;
+        yy = yy + along_y * u.y;
+        determinant = xx * yy - xy * yx;
     }
     /// The vector that the derivative maps to (x, y).
     Point<T> solved(const T& x, const T& y) const {
-        return {(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant};
+        return {(yy * x - xy * y) / determinant, (xx * y - yx * x) / determinant};
     }
 };
 

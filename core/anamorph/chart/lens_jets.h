@@ -166,7 +166,7 @@ void take_first_part(const LensTerms& lens, const Point<Jets<double, N>>& u, Lac
                 const double x = u.x.c[at][i], y = u.y.c[at][i];
                 Point<double>& left = lacking.of[m + to][i];
                 left.x -= slope.xx.c[1 + to] * x + slope.xy.c[1 + to] * y;
-                left.y -= slope.xy.c[1 + to] * x + slope.yy.c[1 + to] * y;
+                left.y -= slope.yx.c[1 + to] * x + slope.yy.c[1 + to] * y;
             }
     }
 }

@@ -30,8 +30,11 @@ ParameterTable make_lens_table() {
             "undistort: the source was taken through the lens, and the picture is free of it; distort: "
             "the other way round, with the picture of the size that the lens is of"),
         text("lens",
-             "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2), "
-             "kb4 (k1 to k4) or division (k1, k2), and d, e, the shift of its centre in pixels, which stays "
+             "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2, s1 to s4), 3de4 "
+             "(k1, k2), "
+             "kb4 (k1 to k4), division (k1, k2), poly (k0 to k4) or ocam (a0, a2, a3, a4), and d, e, the "
+             "shift of its "
+             "centre in pixels, which stays "
              "where it is; by "
              "default what the image says of itself"),
         above(number("fov", "degrees", "", 0, 360,
@@ -101,6 +104,12 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
                               vertical_field(projection, size, fov, facts.pixel_aspect)),
                         by_focal_length, std::move(says)};
     };
+    // Its focal length is a0.
+    if (model.kind == LensModel::Kind::ocam)
+        return {Chart(Projection::stereographic, size.width, size.height,
+                      fov_of_plane_width(Projection::stereographic, size.width / std::fabs(model.values[0])),
+                      PixelSpacing::edges, "", 1, model),
+                true};
     // Of the other models nothing depends on it.
     if (!by_focal_length) return with(Chart::default_fov(projection));
     if (values.given("fov")) return with(values.number("fov"));

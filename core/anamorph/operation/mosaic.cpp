@@ -59,6 +59,7 @@ ParameterTable make_mosaic_table() {
         as_pano("focal"),
         as_pano("sensor"),
         as_pano("d"),
+        as_pano("e"),
         as_pano("yaw"),
         as_pano("pitch"),
         as_pano("roll"),

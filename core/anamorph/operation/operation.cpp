@@ -50,6 +50,7 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         for (const auto& [name, value] : {std::pair{" fov=", facts.fov},
                                           {" vfov=", facts.vfov},
                                           {" d=", facts.distance},
+                                          {" e=", facts.second},
                                           {" yaw=", facts.yaw},
                                           {" pitch=", facts.pitch},
                                           {" roll=", facts.roll}})

@@ -126,13 +126,19 @@ ParameterTable make_pano_table() {
             "left corner of the source in it, as in 8000x4000+1200+900; srcfov and srcvfov are then the "
             "whole's; by default as the image says (GPano:CroppedArea...), also of one that was resized; "
             "none: it is whole"),
-        number("srcd", "", "1", 0, Chart::kMostDistance,
-               "distance d of the source, for from=pannini, and xi for from=unified"),
+        number("srcd", "", "1", Chart::kLeastDistance, Chart::kMostDistance,
+               "distance d of the source, for from=pannini; xi for from=unified and double_sphere, beta for "
+               "eucm"),
         number(
-            "d", "", "1", 0, Chart::kMostDistance,
+            "d", "", "1", Chart::kLeastDistance, Chart::kMostDistance,
             "Pannini's distance d of the picture, for to=pannini: 0 is rectilinear, 1 the usual one; of "
             "to=unified, xi: 0 is rectilinear, 1 stereographic; fov stays below the angle at which d + cos "
-            "or 1 + d cos of its half is 0"),
+            "or 1 + d cos of its half is 0; of to=double_sphere, xi, at most 1, and of to=eucm, beta, from "
+            "0.001"),
+        number("srce", "", shortest(Distance::kSecond), 0, 1,
+               "alpha of the source, for from=eucm and double_sphere"),
+        number("e", "", shortest(Distance::kSecond), 0, 1,
+               "alpha of the picture, for to=eucm and double_sphere"),
         number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
@@ -155,9 +161,9 @@ ParameterTable make_pano_table() {
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
              "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
-             "(k1 to k6, p1, p2), 3de4 (k1, k2), kb4 (k1 to k4) or division (k1, k2), and d, e, the shift of "
-             "its centre in "
-             "pixels; by default none; fields of view are those without distortion"),
+             "(k1 to k6, p1, p2, s1 to s4), 3de4 (k1, k2), kb4 (k1 to k4), division (k1, k2), "
+             "poly (k0 to k4) or ocam (a0, a2, a3, a4), and d, e, the shift of its centre in pixels; by "
+             "default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
         overscan(),
@@ -209,7 +215,7 @@ Size natural_size(const Field& field, double width) {
 
 /// The picture's size where none was given: as many pixels per radian at its centre as the source has. `magnified`: by
 /// its lens there.
-Size default_size(Projection projection, const Field& field, double d, double magnified,
+Size default_size(Projection projection, const Field& field, const Distance& d, double magnified,
                   const Chart& source) {
     const int probe = 1200;  // holds whole faces of every cube layout
     const Size shape = natural_size(field, probe);
@@ -251,7 +257,7 @@ bool is_given(const ParameterValues& values, const std::string& name) {
 
 /// The horizontal field of view that is asked for, in degrees or by a focal length; none where it is not. `of`: "src" or nothing.
 std::optional<double> asked_fov(const ParameterValues& values, const std::string& of, Projection projection,
-                                double d) {
+                                const Distance& d) {
     const std::string fov = of + "fov", focal = of + "focal", sensor = of + "sensor";
     if (!is_given(values, focal)) {
         if (is_given(values, sensor))
@@ -276,8 +282,8 @@ std::optional<double> asked_fov(const ParameterValues& values, const std::string
 
 /// The horizontal field of view that pixels, so many times as wide as high, make of a vertical one. Throws Error where there is
 /// none.
-double fov_by_vfov(Projection projection, double vfov, const Size& size, double d, const std::string& name,
-                   double pixel_aspect = 1) {
+double fov_by_vfov(Projection projection, double vfov, const Size& size, const Distance& d,
+                   const std::string& name, double pixel_aspect = 1) {
     const double height = plane_height(projection, vfov, d),
                  width = height / size.height * (size.width * pixel_aspect);
     // Says what is wrong with it.
@@ -314,7 +320,7 @@ double vfov_by_fov(Projection projection, double fov, double width, double heigh
 }
 
 /// What the picture covers. `size`: that which is asked for, with a height below 0 where that is not given.
-Field target_field(const ParameterValues& values, Projection to, double d, const Size& size) {
+Field target_field(const ParameterValues& values, Projection to, const Distance& d, const Size& size) {
     const std::optional<double> fov = asked_fov(values, "", to, d);
     Field field{fov.value_or(Chart::default_fov(to))};
     if (!is_given(values, "vfov")) {
@@ -344,17 +350,19 @@ void check_distance(const ParameterValues& values, const std::string& name, cons
                 "is of " + names + ": must not be given with " + of + "=" + std::string(name_of(projection)));
 }
 
-/// Pannini's d of the source.
-double source_distance(const ParameterValues& values, const SourceFacts& facts, Projection from) {
-    const bool is_said = !values.given("srcd") && facts.distance && facts.projection == from;
-    return is_said ? *facts.distance : values.number("srcd");
+/// The numbers of the source's projection.
+Distance source_distance(const ParameterValues& values, const SourceFacts& facts, Projection from) {
+    const auto number = [&](const char* name, const std::optional<double>& said) {
+        return !values.given(name) && said && facts.projection == from ? *said : values.number(name);
+    };
+    return {number("srcd", facts.distance), number("srce", facts.second)};
 }
 
 /// The field of view of the source: what was asked for or what it says of itself, else by its camera's focal
 /// length, else the projection's.
 TakenFieldOfView source_field_of_view(const ParameterValues& values, const SourceFacts& facts,
                                       Projection projection, PixelSpacing spacing) {
-    const double d = source_distance(values, facts, projection);
+    const Distance d = source_distance(values, facts, projection);
     if (const std::optional<double> asked = asked_fov(values, "src", projection, d)) return {*asked, ""};
     const bool says = facts.projection == projection;
     if (facts.fov && says) return {*facts.fov, ""};
@@ -457,7 +465,7 @@ std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
 Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
     check_distance(values, "d", "to", to);
-    const double d = values.number("d");
+    const Distance d{values.number("d"), values.number("e")};
     const LensModel lens = lens_of(values, "lens");
     Size size = values.given("size") ? values.extent("size") : Size{0, -1};
     const Field field = target_field(values, to, d, size);
@@ -559,7 +567,7 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
     check_distance(values, "srcd", "from", from);
-    const double d = source_distance(values, facts, from);
+    const Distance d = source_distance(values, facts, from);
     const bool has_vfov = is_given(values, "srcvfov"),
                is_asked = asked_fov(values, "src", from, d).has_value(),
                is_said = facts.fov && facts.projection == from;

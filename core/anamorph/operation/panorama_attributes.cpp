@@ -9,7 +9,9 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     Attributes says;
     std::string projection = std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov());
     if (picture.vertical().fov != 0) projection += " vfov=" + shortest(picture.vertical().fov);
-    if (has_distance(picture.projection())) projection += " d=" + shortest(picture.distance());
+    const int numbers = numbers_of(picture.projection());
+    if (numbers > 0) projection += " d=" + shortest(picture.distance().d);
+    if (numbers > 1) projection += " e=" + shortest(picture.distance().e);
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;

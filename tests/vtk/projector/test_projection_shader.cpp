@@ -451,7 +451,7 @@ TEST(VtkProjectionShader, ParallelCamerasAreServed) {
 
 TEST(VtkProjectionShader, LensesOfEveryModelAreServed) {
     for (const auto& [projection, lens] :
-         {std::pair(Projection::rectilinear, "brown:k1=-0.1,k2=0.02,p1=0.001,p2=-0.002"),
+         {std::pair(Projection::rectilinear, "brown:k1=-0.1,k2=0.02,p1=0.001,p2=-0.002,s1=0.001,s4=-0.0005"),
           std::pair(Projection::rectilinear, "ptlens:a=0.01,b=-0.03,c=0.01"),
           std::pair(Projection::rectilinear, "3de4:k1=0.05,k2=-0.01"),
           std::pair(Projection::fisheye, "kb4:k1=0.02,k2=-0.004"),

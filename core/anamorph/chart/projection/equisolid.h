@@ -4,7 +4,7 @@
 
 struct Equisolid : AxisFamily {
     static constexpr std::string_view alias = "lambert";
-    static constexpr double diameter = 4;
+    static double diameter(const Setting&) { return 4; }
 
     static long double width(long double degrees, const Setting&) {
         return 4 * std::sin(degrees / 4 * kDegree);

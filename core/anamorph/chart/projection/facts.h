@@ -31,14 +31,25 @@ struct Heading {
     }
 };
 
-/// The distance d of the Pannini projection, and constants that its formulas compute from it.
+/// The numbers d and e of projections that have some, such as the distance d of the Pannini projection, and constants that
+/// formulas compute from them.
 struct Distance {
-    double d;
-    Constant per_sum;      ///< 1 / (d + 1)
-    Constant less_square;  ///< 1 - d^2
+    double d, e;
+    Constant per_sum;                    ///< 1 / (d + 1)
+    Constant less_square;                ///< 1 - d^2
+    Constant rest, difference, product;  ///< 1 - e, 1 - 2 e, e (1 - e)
 
-    Distance(double distance = 1)  // NOLINT: the number is the distance
-        : d(distance), per_sum(1 / (1.0L + d)), less_square((1.0L - d) * (1.0L + d)) {}
+    Distance(double distance = 1, double second = kSecond)  // NOLINT: the number is the distance
+        : d(distance),
+          e(second),
+          per_sum(1 / (1.0L + d)),
+          less_square((1.0L - d) * (1.0L + d)),
+          rest(1.0L - e),
+          difference(1 - 2.0L * e),
+          product(e * (1.0L - e)) {}
+
+    /// The second number unless it is said.
+    static constexpr double kSecond = 0.5;
 };
 
 /// The arguments of a projection's formulas besides the point: the direction from which angles are counted (`around` is
@@ -50,7 +61,7 @@ struct Setting {
     double half_width = 0;              ///< half the width of the plane that the picture, or a face, covers
     double centre_x = 0, centre_y = 0;  ///< the centre of the piece in the plane
     double reach = 1;                   ///< the largest tangent that is seen, where not all can be
-    Distance distance;                  ///< the distance d of the Pannini projection
+    Distance distance;                  ///< the numbers d and e of projections that have some
 };
 
 /// The angles that a projection's formulas count.
@@ -68,8 +79,8 @@ struct FieldOfView {
 };
 
 /// The distortion that a picture of a projection may have (chart/lens.h): that of a flat picture, of one whose radius is the
-/// angle from the axis, of another one with an axis, or none.
-enum class Lensed { no, flat, equidistant, axial };
+/// angle from the axis, of a stereographic one, of another one with an axis, or none.
+enum class Lensed { no, flat, equidistant, stereographic, axial };
 
 /// A face of a layout of several: its axes (right, down, forward) as columns, and its place in the layout. A ray
 /// belongs to the face whose `toward` it is nearest to.

@@ -25,8 +25,9 @@ struct AnyProjection {
     static constexpr bool has_oblong_faces = false;
     /// Is the middle of the picture straight behind?
     static constexpr bool looks_back = false;
-    /// Does the picture depend on the distance d?
-    static constexpr bool has_distance = false;
+    /// How many numbers does the picture depend on: 1, the distance d, or 2, with e? And what these may be.
+    static constexpr int numbers = 0;
+    static constexpr double least_d = -0.999, most_d = 1000;
     /// Is every direction seen by the face that it is nearest to?
     static bool faces_see_all(const Setting&) { return true; }
     static constexpr Lensed lensed = Lensed::no;
@@ -46,7 +47,7 @@ struct AnyProjection {
     /// centres take most of what follows, a product and two quotients, and 1 more for the inverse: 18. Which is doubled nearly.
     static double width_units(long double, const Setting&) { return 32; }
     /// The width of the whole plane of a projection that shows the direction straight behind all around its rim.
-    static constexpr double diameter = HUGE_VAL;
+    static double diameter(const Setting&) { return HUGE_VAL; }
     /// The largest tangent of a ray in the corner of a plane of twice this size; 0: there is no limit.
     static double largest_tangent(double, double) { return 0; }
     /// The largest field of view in degrees, where it depends on the setting.
@@ -116,6 +117,37 @@ struct CubeFamily : FlatFamily {
         return min(min(r.z - r.x, r.z + r.x), min(r.z - r.y, r.z + r.y));
     }
 };
+
+/// A number of which long double has a value that is off by `error` at most.
+inline Rounded<long double> known_to(long double value, double error) {
+    const double at = static_cast<double>(value);
+    auto r = Rounded<long double>::near(at, error + 0x1p-53 * std::fabs(at));
+    r.error = error;
+    return r;
+}
+
+/// A width of the plane, and width_units() of it (AnyProjection).
+struct Span {
+    long double value;
+    double units;
+};
+/// The width by the point of the ray half of `degrees` to the right, for projections with an axis that know no better. The angle, of
+/// up to 90 degrees from ahead or behind, is off by 3 units of it and libm by 8 of what it gives: the sine by 11 of its own, since it
+/// changes by at most as much of itself as its angle does, and the cosine by 3 pi / 2 + 8, below 18. What follows is read with
+/// its rounding; 4 units are for what is computed from the width, and all of it is doubled nearly.
+template <class P>
+Span span(long double degrees, const Setting& s) {
+    using R = Rounded<long double>;
+    const long double half = degrees / 2;
+    const bool behind = half > 90;
+    const long double angle = (behind ? 180 - half : half) * kDegree;
+    const long double sine = std::sin(angle), cosine = behind ? -std::cos(angle) : std::cos(angle);
+    const Ray<R> bound{known_to(sine, 11 * R::kUnit * static_cast<double>(sine)), R(0),
+                       known_to(cosine, 18 * R::kUnit)};
+    const long double value = 2 * P::point(Ray<long double>{sine, 0, cosine}, s).x;
+    const double units = 2 * P::point(bound, s).x.error / (R::kUnit * static_cast<double>(value));
+    return {value, 1.8 * (units + 4)};
+}
 
 /// The square root of x^2 + y^2.
 template <class T>

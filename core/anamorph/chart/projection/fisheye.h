@@ -4,7 +4,7 @@
 struct Fisheye : AxisFamily {
     static constexpr Counted counted = Counted::axis;
     static constexpr Lensed lensed = Lensed::equidistant;
-    static constexpr double diameter = 2 * std::numbers::pi;
+    static double diameter(const Setting&) { return 2 * std::numbers::pi; }
 
     template <class T>
     static T inside(const Point<T>& p, const Setting&) {

@@ -29,6 +29,8 @@ ANAMORPH_PROJECTION(octahedral, Octahedral)
 ANAMORPH_PROJECTION(mirror_ball, MirrorBall)
 ANAMORPH_PROJECTION(unified, Unified)
 ANAMORPH_PROJECTION(dual_fisheye_tb, DualFisheyeTb)
+ANAMORPH_PROJECTION(eucm, Eucm)
+ANAMORPH_PROJECTION(double_sphere, DoubleSphere)
 #else
 #include "anamorph/chart/projection/families.h"
 
@@ -52,5 +54,7 @@ ANAMORPH_PROJECTION(dual_fisheye_tb, DualFisheyeTb)
 #include "anamorph/chart/projection/mirror_ball.h"
 #include "anamorph/chart/projection/unified.h"
 #include "anamorph/chart/projection/dual_fisheye_tb.h"
+#include "anamorph/chart/projection/eucm.h"
+#include "anamorph/chart/projection/double_sphere.h"
 #endif
 // clang-format on

@@ -4,7 +4,8 @@
 
 struct Pannini : AnyProjection {
     static constexpr FieldOfView fov{180, 360, true};
-    static constexpr bool has_distance = true;
+    static constexpr int numbers = 1;
+    static constexpr double least_d = 0;
 
     /// The lower limit of cos a: nearer to the back the picture turns round (d > 1) or its scale has no end. Where it is -1 / d
     /// it is rounded towards 0: near -1 an angle changes by many times what its cosine does.

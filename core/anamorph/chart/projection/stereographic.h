@@ -3,6 +3,7 @@
 
 struct Stereographic : AxisFamily {
     static constexpr FieldOfView fov{180, 360, true};
+    static constexpr Lensed lensed = Lensed::stereographic;
 
     static long double width(long double degrees, const Setting&) { return 4 * tan_of(degrees / 4); }
 

@@ -6,7 +6,8 @@
 struct Unified : AnyProjection {
     static constexpr std::string_view alias = "mei";
     static constexpr FieldOfView fov{180, 360, true};
-    static constexpr bool has_distance = true;
+    static constexpr int numbers = 1;
+    static constexpr double least_d = 0;
 
     static double most_fov(const FieldOfView& most, const Setting& s) { return Pannini::most_fov(most, s); }
     static long double width(long double degrees, const Setting& s) { return Pannini::width(degrees, s); }
