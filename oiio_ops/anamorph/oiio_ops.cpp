@@ -64,7 +64,7 @@ ParameterValues values_of(const Operation& operation, const OIIO::ParamValueList
     std::vector<std::string> of_recipes = operation.sources;
     of_recipes.insert(of_recipes.end(), std::begin(kKeysOfRecipes), std::end(kKeysOfRecipes));
     for (const std::string& name : of_recipes)
-        if (asked.given(name))
+        if (asked.given(name) && !(name == operation.main_file && operation.gathers(asked.text(name))))
             throw Error(name, printable(asked.text(name)), "must be given in recipes only");
     values.assign(assignments);
     return values;
@@ -202,6 +202,33 @@ std::vector<std::string> open_linked(const LinkedFiles& linked, std::vector<std:
     return missing;
 }
 
+/// What is known of sources, in their order.
+struct OpenSources {
+    std::vector<std::unique_ptr<Source>> images;
+    std::vector<ImageSpec> specs, shown;  ///< as they are stored, and upright
+    std::vector<SourceImage> known;
+
+    void add(std::unique_ptr<Source> image, const ImageSpec& spec) {
+        images.push_back(std::move(image));
+        specs.push_back(spec);
+        shown.push_back(upright(spec));
+        known.push_back(source_image(shown.back()));
+    }
+};
+
+/// The images that a file gathers, as they are stored.
+OpenSources open_gathered(const LinkedFiles& linked) {
+    OpenSources open;
+    for (const LinkedFile& file : linked) {
+        check_file_name(file.key, file.name);
+        auto image = std::make_unique<CacheSource>(OIIO::ImageCache::create(true), file.name, 0, 0);
+        ImageSpec spec = image->spec();
+        spec.attribute("Orientation", 1);
+        open.add(std::move(image), spec);
+    }
+    return open;
+}
+
 void check_count(const Operation& operation, std::size_t sources) {
     const std::size_t least = operation.least_sources, most = operation.sources.size();
     if (sources >= least && sources <= most) return;
@@ -212,38 +239,41 @@ void check_count(const Operation& operation, std::size_t sources) {
 /// Fills dst by sources that are not dst. Throws Error.
 void run(const Operation& operation, ImageBuf& dst, const std::vector<const ImageBuf*>& sources,
          const OIIO::ParamValueList& options, ROI roi, int nthreads) {
-    check_count(operation, sources.size());
-    std::vector<ImageSpec> specs;
-    std::vector<SourceImage> known;
-    std::vector<ImageSpec> shown;
+    ParameterValues values = values_of(operation, options, dst);
+    const NamedFiles named = files_of(operation, values);
+    const std::string gathering = operation.gathering_file(named.files);
+    if (!gathering.empty() && !sources.empty())
+        throw Error("src", printable(gathering),
+                    "must be given without source images, which it names itself");
+    if (gathering.empty()) check_count(operation, sources.size());
+    OpenSources open = gathering.empty() ? OpenSources() : open_gathered(named.linked);
     for (const ImageBuf* src : sources) {
         if (!src) throw Error("a source image is null");
         check_readable(*src);
-        specs.push_back(src->spec());
-        shown.push_back(upright(src->spec()));
-        known.push_back(source_image(shown.back()));
+        open.add(source_of(*src), src->spec());
     }
-    ParameterValues values = values_of(operation, options, dst);
-    const Attributes lenses = find_lenses(operation, values, shown, known);
-    const NamedFiles named = files_of(operation, values);
-    std::vector<std::unique_ptr<Source>> images;
-    for (const ImageBuf* src : sources) images.push_back(source_of(*src));
-    const std::vector<std::string> missing = open_linked(named.linked, images, specs);
+    const Attributes lenses = find_lenses(operation, values, open.shown, open.known);
+    const bool has_source = !open.known.empty();
+    std::vector<std::unique_ptr<Source>>& images = open.images;
+    std::vector<ImageSpec>& specs = open.specs;
+    const std::vector<std::string> missing =
+        gathering.empty() ? open_linked(named.linked, images, specs) : std::vector<std::string>();
     const std::unique_ptr<const Pictures> pictures =
-        operation.read({values, known, named.files, KeyedFileReader(named.files), missing});
+        operation.read({values, open.known, named.files, KeyedFileReader(named.files), missing});
     const PictureRequest request = *pictures->picture(0, 0);
-    const ImageSpec first = sources.empty() ? ImageSpec() : upright(specs[0]);
+    const ImageSpec first = has_source ? upright(specs[0]) : ImageSpec();
     const std::string space = filtering_space(values, request.pixels);
     // The pixels that a cache lends are of a type of its own.
-    const bool stored = moves_stored(request, specs, space) && sources[*request.moves]->localpixels() &&
+    const bool stored = moves_stored(request, specs, space) && *request.moves < sources.size() &&
+                        sources[*request.moves]->localpixels() &&
                         specs[*request.moves].channelformats.empty();
     if (stored) images[*request.moves] = std::make_unique<BufferSource>(*sources[*request.moves], true);
-    const ImageSpec spec = picture_spec(sources.empty() ? nullptr : &first, request, stored);
+    const ImageSpec spec = picture_spec(has_source ? &first : nullptr, request, stored);
     const ParallelFor parallel_for = default_parallel_for(nthreads);
     const std::unique_ptr<const SolvedPicture> picture = request.solve();
     const Attributes reached = picture->reached(parallel_for);
 
-    const SourceStacks stacks = make_source_stacks(std::move(images), specs, pictures->faces(), space);
+    const SourceStacks stacks = make_source_stacks(std::move(images), specs, *pictures, space);
     const bool unwritten = prepare(dst, spec, roi);
     try {
         fill(dst, *picture, stacks, spec, stored, roi, parallel_for);

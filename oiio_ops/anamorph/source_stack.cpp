@@ -15,7 +15,7 @@ std::string filtering_space(const ParameterValues& values, PixelKind pixels) {
 }
 
 SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const SourceFaces& faces,
-                         const std::string& colorspace)
+                         const std::string& colorspace, const OverSource& over)
     : m_image(std::move(image)), m_top(m_image.get()) {
     if (const StoredOrder order(spec); !order.is_upright()) {
         m_upright = std::make_unique<UprightSource>(*m_image, order);
@@ -28,6 +28,8 @@ SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& s
             m_top = m_working.get();
         }
     }
+    m_over = over(*m_top);
+    if (m_over) m_top = m_over.get();
     // Coarser levels of a file blend faces that do not halve.
     if (auto* file = dynamic_cast<CacheSource*>(m_image.get()); file && faces.columns * faces.rows > 1)
         file->keep_first_level();
@@ -43,14 +45,16 @@ std::string SourceStack::error() const {
 }
 
 SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
-                                const std::vector<OIIO::ImageSpec>& specs, const SourceFaces& faces,
+                                const std::vector<OIIO::ImageSpec>& specs, const Pictures& pictures,
                                 const std::string& colorspace) {
     SourceStacks stacks;
-    for (std::size_t i = 0; i < images.size(); ++i)
-        stacks.push_back(images[i]
-                             ? std::make_unique<const SourceStack>(std::move(images[i]), specs[i],
-                                                                   i == 0 ? faces : SourceFaces{}, colorspace)
-                             : nullptr);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const auto over = [&](const Source& source) { return pictures.over_source(i, source); };
+        stacks.push_back(images[i] ? std::make_unique<const SourceStack>(
+                                         std::move(images[i]), specs[i],
+                                         i == 0 ? pictures.faces() : SourceFaces{}, colorspace, over)
+                                   : nullptr);
+    }
     return stacks;
 }
 

@@ -5,6 +5,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,9 +22,11 @@ std::string filtering_space(const ParameterValues& values, PixelKind pixels);
 /// An image with all of these stages. Reading is thread safe.
 class SourceStack {
   public:
+    /// A function that makes the stage of an operation over those before it; null where it has none.
+    using OverSource = std::function<std::unique_ptr<Source>(const Source&)>;
     /// Builds the stages. `spec`: that of the image as it is stored. `colorspace` may be empty. Throws Error.
     SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const SourceFaces& faces,
-                const std::string& colorspace);
+                const std::string& colorspace, const OverSource& over);
     ~SourceStack();
 
     const Source& top() const { return *m_top; }
@@ -32,16 +35,15 @@ class SourceStack {
     std::string error() const;
 
   private:
-    std::unique_ptr<Source> m_image, m_upright, m_working, m_pyramid;
+    std::unique_ptr<Source> m_image, m_upright, m_working, m_over, m_pyramid;
     std::shared_ptr<const WorkingSpace> m_space;
     const Source* m_top;
 };
 
-/// The sources of a picture, as many as the operation takes, null where one is missing; `faces` are the first
-/// one's.
+/// The sources of pictures, as many as the operation takes, null where one is missing.
 using SourceStacks = std::vector<std::unique_ptr<const SourceStack>>;
 SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
-                                const std::vector<OIIO::ImageSpec>& specs, const SourceFaces& faces,
+                                const std::vector<OIIO::ImageSpec>& specs, const Pictures& pictures,
                                 const std::string& colorspace);
 
 /// Fills `view` with the pixels of `box`, in the first source's own colour space. Throws Error when a source

@@ -120,7 +120,9 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
     const std::string first = operation.sources.empty() ? operation.main_file : operation.sources[0];
     if (!first.empty() && !recipe.files.count(first))
         recipe.files[first] = {parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1), "",
-                               first != operation.main_file};
+                               !operation.sources.empty()};
+    for (auto& [key, file] : recipe.files)
+        if (key == first && operation.gathers(file.name)) file.image = false;
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
     const SideFiles known = recipe.files;
     if (operation.linked)

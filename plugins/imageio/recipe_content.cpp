@@ -133,10 +133,19 @@ class OpenPictures {
     std::map<std::string, std::weak_ptr<const Content>> m_open;
 };
 
-/// Those sources of a recipe that are given, in the order of their keys.
+/// Does a file name the images that are a recipe's sources?
+bool gathers(const Recipe& recipe) {
+    return !recipe.operation->gathering_file(recipe.files).empty();
+}
+
+/// Those sources of a recipe that are given, in the order of their keys, or all that a file gathers.
 std::vector<SideFile> sources_of(const Recipe& recipe) {
     const std::vector<std::string>& keys = recipe.operation->sources;
     std::vector<SideFile> sources;
+    if (gathers(recipe)) {
+        for (const std::string& key : recipe.linked_images) sources.push_back(recipe.files.at(key));
+        return sources;
+    }
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const auto file = recipe.files.find(keys[i]);
         const bool given = file != recipe.files.end();
@@ -163,6 +172,7 @@ class RecipeContent final : public Content {
             const int own = part_in(file, opening, part, parts);
             images.push_back(open_source(file, opening, own));
             specs.push_back(images.back().image->spec());
+            if (gathers(recipe)) specs.back().attribute("Orientation", 1);
             shown.push_back(upright(specs.back()));
             known.push_back(source_image(shown.back()));
             identity += file.identity + std::to_string(own) + "\n";
@@ -171,7 +181,9 @@ class RecipeContent final : public Content {
         m_lenses = find_lenses(*recipe.operation, values, shown, known);
         if (parts > 1) m_part = std::to_string(part) + " of " + std::to_string(parts);
         std::vector<std::string> missing;
+        if (gathers(recipe)) identity += recipe.files.at(recipe.operation->main_file).identity;
         for (const std::string& key : recipe.linked_images) {
+            if (gathers(recipe)) break;
             const SideFile& file = recipe.files.at(key);
             identity += file.identity;
             images.push_back(open_or_none(file, opening, part, parts));
@@ -361,7 +373,7 @@ class RecipeContent final : public Content {
             std::vector<std::unique_ptr<Source>> sources;
             for (OpenSource& open : images) sources.push_back(std::move(open.image));
             return std::make_shared<const SourceStacks>(
-                make_source_stacks(std::move(sources), specs, faces, m_space));
+                make_source_stacks(std::move(sources), specs, *m_pictures, m_space));
         });
     }
 

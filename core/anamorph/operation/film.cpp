@@ -81,6 +81,9 @@ class FilmPictures final : public Pictures {
         return request;
     }
     SourceFaces faces() const override { return pictures_at(m_sequence.time_of(0))->faces(); }
+    std::unique_ptr<Source> over_source(std::size_t i, const Source& source) const override {
+        return pictures_at(m_sequence.time_of(0))->over_source(i, source);
+    }
 
   private:
     std::unique_ptr<const Pictures> pictures_at(double time) const {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "anamorph/parameter/text_file.h"
+
 namespace anamorph {
 
 #define ANAMORPH_OPERATION(name) const Operation& name##_operation();
@@ -11,11 +13,25 @@ namespace anamorph {
 
 std::unique_ptr<const Pictures> Operation::read(const OperationInput& input) const {
     const std::size_t given = input.sources.size();
-    if (given < least_sources || given > sources.size())
+    const bool gathers_all = !gathering_file(input.files).empty();
+    if (given < least_sources || (given > sources.size() && !gathers_all))
         throw Error("sources", std::to_string(given),
                     name + " takes " + std::to_string(least_sources) +
                         (least_sources < sources.size() ? " to " + std::to_string(sources.size()) : ""));
     return make(input);
+}
+
+bool Operation::gathers(std::string_view file) const {
+    // With arguments it is the name of a recipe.
+    if (sources.empty() || main_file != sources[0] || file.find('?') != std::string_view::npos) return false;
+    return std::any_of(endings.begin(), endings.end(), [&](const std::string& ending) {
+        return file.size() > ending.size() + 1 && text_file::ends_with(file, "." + ending);
+    });
+}
+
+std::string Operation::gathering_file(const SideFiles& files) const {
+    const auto found = sources.empty() ? files.end() : files.find(sources[0]);
+    return found != files.end() && gathers(found->second.name) ? found->second.name : "";
 }
 
 const std::vector<const Operation*>& operations() {
@@ -71,7 +87,8 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         key += "\n";
     }
     for (const auto& [name, file] : files)
-        if (std::find(operation.sources.begin(), operation.sources.end(), name) == operation.sources.end())
+        if (std::find(operation.sources.begin(), operation.sources.end(), name) == operation.sources.end() ||
+            operation.gathers(file.name))
             key += name + "=" + file.name + "\n" + file.identity + "\n";
     return key;
 }

@@ -139,6 +139,9 @@ class Pictures {
     virtual std::optional<PictureRequest> picture(int frame, int level) const = 0;
     /// How the first source is divided.
     virtual SourceFaces faces() const { return {}; }
+    /// What the pictures read in place of their i-th source, upright and in the colour space that they are filtered in, before
+    /// coarser levels are made of it; null where they read the source itself. It keeps a reference to the source.
+    virtual std::unique_ptr<Source> over_source(std::size_t, const Source&) const { return nullptr; }
 };
 
 /// All that an operation is given.
@@ -176,7 +179,8 @@ struct Operation {
     /// The function that read() calls.
     std::unique_ptr<const Pictures> (*make)(const OperationInput& input);
 
-    /// The key of the side file that is by default the recipe's name without its ending; may be none.
+    /// The key of the side file that is by default the recipe's name without its ending; may be none. Where it is that of the first
+    /// source, a file with one of `endings` names images (`linked`), which are then the sources, as they are stored.
     std::string main_file = {};
     /// The endings of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
     std::vector<std::string> endings = {};
@@ -187,8 +191,13 @@ struct Operation {
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
                           const SideFileReader& reader) = nullptr;
 
-    /// Makes pictures of what it is given: of `least_sources` sources or more, up to one for each of its keys, and of the side files
-    /// that the values of keys of type file and image name, which the host has entered by these keys. Throws Error.
+    /// Is it the name of a file that stands for the first source, and names images that are the sources?
+    bool gathers(std::string_view file) const;
+    /// The name of such a file among the side files; empty where there is none.
+    std::string gathering_file(const SideFiles& files) const;
+
+    /// Makes pictures of what it is given: of `least_sources` sources or more, up to one for each of its keys, or of all that a file gathers, and of
+    /// the side files that the values of keys of type file and image name, which the host has entered by these keys. Throws Error.
     std::unique_ptr<const Pictures> read(const OperationInput& input) const;
 };
 

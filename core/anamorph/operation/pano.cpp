@@ -12,6 +12,7 @@
 #include "anamorph/operation/film.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/pano_formula.h"
+#include "anamorph/operation/pano_project.h"
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
@@ -89,7 +90,7 @@ ParameterTable make_pano_table() {
     ParameterTable table = {
         image("src",
               "the source image; by default the recipe's name without .pano; in a name it stands last when "
-              "it has arguments of its own"),
+              "it has arguments of its own; a project of Hugin, x.pto, is the images that it names"),
         choice("from", "", projection_name_list(),
                "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
                "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
@@ -194,7 +195,7 @@ ParameterTable make_pano_table() {
         alpha(),
         flip_v(),
     };
-    for (const ParameterTable& part : {stereo(), film_rows(), ray_rows()})
+    for (const ParameterTable& part : {project(), stereo(), film_rows(), ray_rows()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
@@ -339,15 +340,19 @@ struct TakenFieldOfView {
     std::string reason;  ///< where it goes without saying, nothing
 };
 
-/// Refuses a distance of a projection that has none.
-void check_distance(const ParameterValues& values, const std::string& name, const std::string& of,
-                    Projection projection) {
-    if (!is_given(values, name) || has_distance(projection)) return;
-    std::string names;
-    for (const Projection p : kProjections)
-        if (has_distance(p)) names += (names.empty() ? "" : " and ") + std::string(name_of(p));
-    throw Error(name, printable(values.text(name)),
-                "is of " + names + ": must not be given with " + of + "=" + std::string(name_of(projection)));
+/// Refuses numbers of a projection that has none, or no second one. `prefix`: of the keys d and e; `of`: the projection's key.
+void check_numbers(const ParameterValues& values, const std::string& prefix, const std::string& of,
+                   Projection projection) {
+    for (const int number : {1, 2}) {
+        const std::string name = prefix + (number == 1 ? "d" : "e");
+        if (!is_given(values, name) || numbers_of(projection) >= number) continue;
+        std::string names;
+        for (const Projection p : kProjections)
+            if (numbers_of(p) >= number) names += (names.empty() ? "" : ", ") + std::string(name_of(p));
+        throw Error(
+            name, printable(values.text(name)),
+            "is of " + names + ": must not be given with " + of + "=" + std::string(name_of(projection)));
+    }
 }
 
 /// The numbers of the source's projection.
@@ -464,7 +469,7 @@ std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
 
 Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
-    check_distance(values, "d", "to", to);
+    check_numbers(values, "", "to", to);
     const Distance d{values.number("d"), values.number("e")};
     const LensModel lens = lens_of(values, "lens");
     Size size = values.given("size") ? values.extent("size") : Size{0, -1};
@@ -566,7 +571,7 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
     const auto [fov, fov_reason] = source_field_of_view(values, facts, from, spacing);
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    check_distance(values, "srcd", "from", from);
+    check_numbers(values, "src", "from", from);
     const Distance d = source_distance(values, facts, from);
     const bool has_vfov = is_given(values, "srcvfov"),
                is_asked = asked_fov(values, "src", from, d).has_value(),
@@ -690,16 +695,22 @@ class Panos final : public Pictures {
 
 }  // namespace
 
+std::unique_ptr<const Pictures> reprojected_pictures(const ReprojectRequest& request) {
+    return std::make_unique<Panos>(request);
+}
+
 const Operation& pano_operation() {
     static const ParameterTable table = make_pano_table();
     static const Operation operation{
-        "pano",
-        "A panorama seen through another lens",
-        &table,
-        {"src"},
-        1,
-        {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
-        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+        .name = "pano",
+        .title = "A panorama seen through another lens",
+        .parameters = &table,
+        .sources = {"src"},
+        .least_sources = 1,
+        .example = {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
+        .make = [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+            if (is_of_project(input.files)) return pictures_of_project(input);
+            refuse_rows_of_projects(input.values);
             const Eyes eyes(input.values, input.sources[0].facts);
             const bool is_formula = has_formula(input.values);
             return eyes.pictures(
@@ -707,9 +718,12 @@ const Operation& pano_operation() {
                               [is_formula, facts = eyes.facts_of_one()](
                                   const ParameterValues& values) -> std::unique_ptr<const Pictures> {
                                   if (is_formula) return pictures_of_formula(values, facts);
-                                  return std::make_unique<Panos>(read_reproject_request(values, facts));
+                                  return reprojected_pictures(read_reproject_request(values, facts));
                               }));
-        }};
+        },
+        .main_file = "src",
+        .endings = {"pto"},
+        .linked = images_of_project};
     return operation;
 }
 

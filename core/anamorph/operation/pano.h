@@ -60,6 +60,9 @@ Size read_overscan(const ParameterValues& values, const Chart& target);
 Orientation read_orientation(const ParameterValues& values);
 ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source);
 
+/// The picture of a request, at all its levels.
+std::unique_ptr<const Pictures> reprojected_pictures(const ReprojectRequest& request);
+
 /// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
 /// none after the last.
 std::optional<Chart> half_size(const Chart& chart);
