@@ -79,6 +79,7 @@ LINES = [
 ]
 OTHERS = [
     Other("recipe", "src=panorama.exr", "oiio", "view.pano", "oiiotool view.pano -o from_a_file.png"),
+    Other("pto", 'n"photo.jpg"', "oiio", "hugin.pto", "oiiotool hugin.pto.pano -o of_project.exr"),
     Other("json", '"deformations"', "oiio", "raised.json", 'oiiotool "round.png.drape?deform=raised.json" -o raised.png'),
     Other("json", '"keys"', "oiio", "turning.json",
           'oiiotool "round.png.drape?surface=page_turn&keys=turning.json&frame=12" -o turning.png'),
@@ -106,6 +107,7 @@ OTHERS = [
 FIRST_LINES = [  # of blocks without a word about their language
     ("json", r"\{"),
     ("c++", r"#include "),
+    ("pto", r"p f\d"),
     ("recipe", r"# \w+\.(pano|mosaic|lens|warp|morph|drape|figure)$"),
     ("python", r"(import|from) \w|[\w.]+(, [\w.]+)* = |[\w.]+\("),
 ]
