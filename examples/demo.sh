@@ -102,6 +102,7 @@ oiiotool "panorama.exr.pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360&
 
 # A picture through a control mesh, as it is and half as strong, and how far every source point is off.
 /usr/bin/python3 ../../../examples/make_faces.py round.png long.png faces.csv
+/usr/bin/python3 ../../../examples/make_cube.py label_ .png
 cp -r ../../../examples/bulge.json ../../../examples/maps .
 echo "warp.jpg: round.png.warp?mesh=bulge.json"
 oiiotool "round.png.warp?mesh=bulge.json" -o warp.jpg

@@ -111,7 +111,8 @@ void read_projection(const std::string& text, SourceFacts& facts) {
         rest.erase(0, word.size() + value.size());
         return value;
     };
-    const std::string vfov = next(" vfov="), distance = next(" d="), second = next(" e=");
+    const std::string vfov = next(" vfov="), distance = next(" d="), second = next(" e="),
+                      padding = next(" padding=");
     constexpr std::string_view kLens = " lens=";
     try {
         const Projection projection = projection_from_name(text.substr(0, blank));
@@ -125,7 +126,8 @@ void read_projection(const std::string& text, SourceFacts& facts) {
     for (const auto& [written, to] : {std::pair{fov, &facts.fov},
                                       {vfov, &facts.vfov},
                                       {distance, &facts.distance},
-                                      {second, &facts.second}})
+                                      {second, &facts.second},
+                                      {padding, &facts.padding}})
         if (Strutil::string_is_float(written)) *to = Strutil::stod(written);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "anamorph/face_source.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/orientation.h"
@@ -40,6 +41,7 @@ SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& s
 SourceStack::~SourceStack() = default;
 
 std::string SourceStack::error() const {
+    if (const auto* faces = dynamic_cast<const FaceSource*>(m_image.get())) return faces->error();
     const auto* file = dynamic_cast<const CacheSource*>(m_image.get());
     return file ? file->error() : "";
 }

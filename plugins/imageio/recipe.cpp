@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "anamorph/file_names.h"
+#include "anamorph/operation/face_files.h"
 #include "anamorph/side_files.h"
 #include "buffer_store.h"
 
@@ -74,6 +75,19 @@ bool ends_as_main_file(const Operation& operation, std::string_view name) {
     });
 }
 
+/// Where the source's name is none of a file, but stands for six: finds them.
+void find_faces(Recipe& recipe, const std::string& key) {
+    SideFile& source = recipe.files[key];
+    const auto exists = [](const std::string& name) { return side_file_reader().exists(name); };
+    if (!has_face(source.name) || operation_of(source.name) || exists(source.name)) return;
+    auto faces = std::make_shared<FaceFiles>(find_face_files(key, source.name, recipe.values, exists));
+    for (std::size_t i = 0; i < faces->names.size(); ++i) {
+        check_file_name(key, faces->names[i]);
+        faces->identities[i] = state_of(faces->names[i]);
+    }
+    source.faces = std::move(faces);
+}
+
 /// The values of a recipe, and the files that they name; nothing is known of those yet.
 Recipe read_recipe(const Operation& operation, const std::string& name,
                    const std::vector<Assignment>& config) {
@@ -124,6 +138,7 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
     for (auto& [key, file] : recipe.files)
         if (key == first && operation.gathers(file.name)) file.image = false;
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
+    if (operation.reads_faces) find_faces(recipe, first);
     const SideFiles known = recipe.files;
     if (operation.linked)
         for (const LinkedFile& file : operation.linked(recipe.values, known, KeyedFileReader(known))) {
@@ -204,6 +219,8 @@ void RecipeReader::visit(const SideFile& file) {
         const auto [state, is_new] = m_states.try_emplace(name);
         if (is_new) state->second = state_of(file.name);
         m_identity += state->second;
+        if (file.faces)
+            for (const std::string& identity : file.faces->identities) m_identity += identity;
         if (operation)
             for (const auto& [key, used] : nested(*operation, file.name).files) visit(used);
     }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "anamorph/chain/joined.h"
+#include "anamorph/face_source.h"
 #include "anamorph/image_source.h"
 #include "anamorph/lens_database.h"
 #include "anamorph/metadata.h"
@@ -95,6 +96,8 @@ class Opening {
     std::shared_ptr<const Content> open(const std::string& name, const std::vector<Assignment>& config);
     /// Opens a part of a source that is no recipe; its header is read once.
     std::unique_ptr<CacheSource> open_file(const SideFile& file, int part);
+    /// Opens a part of each of the six files that a source's name stands for.
+    std::unique_ptr<FaceSource> open_faces(const SideFile& file, int part);
     /// The names of a source's parts, of which there is at least one; recipes give none.
     std::vector<std::string> parts_of(const SideFile& file);
 
@@ -171,10 +174,11 @@ class RecipeContent final : public Content {
         for (const SideFile& file : sources_of(recipe)) {
             const int own = part_in(file, opening, part, parts);
             images.push_back(open_source(file, opening, own));
-            specs.push_back(images.back().image->spec());
+            const OpenSource& open = images.back();
+            specs.push_back(open.faces ? open.faces->spec() : open.image->spec());
             if (gathers(recipe)) specs.back().attribute("Orientation", 1);
-            shown.push_back(upright(specs.back()));
-            known.push_back(source_image(shown.back()));
+            shown.push_back(open.faces ? specs.back() : upright(specs.back()));
+            known.push_back(open.faces ? open.faces->known() : source_image(shown.back()));
             identity += file.identity + std::to_string(own) + "\n";
         }
         if (!specs.empty()) m_source = shown[0];
@@ -323,6 +327,7 @@ class RecipeContent final : public Content {
         std::unique_ptr<CacheSource> image;
         std::shared_ptr<const Content> content;  ///< of a recipe
         int part = 0;
+        std::unique_ptr<FaceSource> faces = {};  ///< six files, in place of `image`
     };
 
     /// Joins the picture with its source's, where that is a recipe and it can be done. Says what came of it.
@@ -370,10 +375,8 @@ class RecipeContent final : public Content {
                                 std::to_string(faces.rows) +
                                 (m_stored ? " stored " + std::to_string(*first.moves) : "");
         m_stacks = stacks.get(key, [&] {
-            std::vector<std::unique_ptr<Source>> sources;
-            for (OpenSource& open : images) sources.push_back(std::move(open.image));
             return std::make_shared<const SourceStacks>(
-                make_source_stacks(std::move(sources), specs, *m_pictures, m_space));
+                make_source_stacks(taken(images), specs, *m_pictures, m_space));
         });
     }
 
@@ -384,16 +387,23 @@ class RecipeContent final : public Content {
         const SourceFaces faces = m_pictures->faces();
         static auto& stacks = *new Memo<const SourceStacks>(2);
         m_stored_stacks = stacks.get(identity, [&] {
-            std::vector<std::unique_ptr<Source>> sources;
-            for (OpenSource& open : images) sources.push_back(std::move(open.image));
-            return std::make_shared<const SourceStacks>(
-                make_source_stacks(std::move(sources), specs, faces, ""));
+            return std::make_shared<const SourceStacks>(make_source_stacks(taken(images), specs, faces, ""));
         });
+    }
+
+    static std::vector<std::unique_ptr<Source>> taken(std::vector<OpenSource>& images) {
+        std::vector<std::unique_ptr<Source>> sources;
+        for (OpenSource& open : images)
+            sources.push_back(open.faces ? std::unique_ptr<Source>(std::move(open.faces))
+                                         : std::move(open.image));
+        return sources;
     }
 
     /// A cache would make float of what is stored otherwise; recipes are read by what they show.
     static void keep_stored(const OpenSource& open) {
-        if (const std::shared_ptr<const Content> content = open.content)
+        if (open.faces)
+            open.faces->keep_stored();
+        else if (const std::shared_ptr<const Content> content = open.content)
             open.image->keep_stored([content, part = open.part](const Box& box, std::byte* pixels) {
                 content->read(part, 0, box, pixels);
             });
@@ -404,6 +414,7 @@ class RecipeContent final : public Content {
     /// A source that is a recipe stays open while this picture is, so that the cache that asks for it by its
     /// name does not make it again.
     OpenSource open_source(const SideFile& file, Opening& opening, int part) {
+        if (file.faces) return {nullptr, nullptr, part, opening.open_faces(file, part)};
         if (!operation_of(file.name)) return {opening.open_file(file, part), nullptr, part};
         const std::shared_ptr<const Content> content =
             in_recipe(file.name, [&] { return opening.open(file.name, {}); });
@@ -620,7 +631,27 @@ std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file, int part) 
     return source;
 }
 
+SideFile face_of(const FaceFiles& faces, std::size_t i) {
+    return {faces.names[i], faces.identities[i], true};
+}
+
+std::unique_ptr<FaceSource> Opening::open_faces(const SideFile& file, int part) {
+    const FaceFiles& faces = *file.faces;
+    std::vector<std::unique_ptr<CacheSource>> files;
+    for (std::size_t i = 0; i < faces.names.size(); ++i) files.push_back(open_file(face_of(faces, i), part));
+    return std::make_unique<FaceSource>(std::move(files), faces);
+}
+
 std::vector<std::string> Opening::parts_of(const SideFile& file) {
+    if (file.faces) {
+        const std::vector<std::string> parts = parts_of(face_of(*file.faces, 0));
+        for (std::size_t i = 1; i < file.faces->names.size(); ++i)
+            if (const auto own = parts_of(face_of(*file.faces, i)).size(); own != parts.size())
+                throw Error("source \"" + printable(file.faces->names[i]) + "\" has " + std::to_string(own) +
+                            " parts: must have as many as \"" + printable(file.faces->names[0]) + "\", " +
+                            std::to_string(parts.size()));
+        return parts;
+    }
     if (operation_of(file.name))
         return std::vector<std::string>(
             static_cast<std::size_t>(in_recipe(file.name, [&] { return open(file.name, {}); })->subimages()));

@@ -47,6 +47,7 @@ LINES = [
     Line(r"export OIIO_LIBRARY_PATH=", ("oiio",)),
     Line(r"cd build/demo/out$", ("oiio",)),
     Line(r"oiiotool ", ("oiio",)),
+    Line(r"for face in .*oiiotool ", ("oiio",)),
     Line(r"ffmpeg ", ("oiio",)),
     Line(r"anamorph-figure ", ("command",)),
     Line(r"anamorph-machine ", ("command",)),

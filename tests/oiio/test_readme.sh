@@ -11,6 +11,7 @@ ln -s "$ANAMORPH_BUILD_DIR" tree/build/release
 cd tree/build/demo/out
 "$PYTHON" "$examples/make_panorama.py" panorama.exr 512
 "$PYTHON" "$examples/make_faces.py" round.png long.png faces.csv
+"$PYTHON" "$examples/make_cube.py" label_ .png
 cp -r "$examples/maps" .
 cp "$examples/bulge.json" "$examples/relief.csv" "$examples/smile.csv" "$examples/frown.csv" "$examples/swirl.ps" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
 lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
@@ -23,7 +24,7 @@ oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
 oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 "$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 66 ]
+[ "$(wc -l <one_liners.sh)" -eq 72 ]
 if ! command -v ffmpeg >/dev/null; then
     sed -i '/^ffmpeg /d' one_liners.sh
 fi
@@ -64,6 +65,13 @@ idiff -fail 0.02 -failpercent 1 -hardfail 20 -warn 20 plate.exr taken.exr  # the
 oiiotool --info -v bent.exr | grep "anamorph:chain: \"warp of pano of lens\""
 oiiotool --info -v of_part.exr | grep "a part of 8000x4000 at 1200,900"
 [ -s of_square.exr ]
+# Six files, which were written face by face, show what the panorama shows.
+oiiotool "panorama.exr.pano?fov=100&yaw=30&size=480x360" -o of_whole.exr
+idiff -fail 0.1 -failpercent 3 -hardfail 999 -warn 999 of_six.exr of_whole.exr
+iinfo cubes.png | tr -d ' ' | grep ":1152x384,3channel,uint8png"
+[ -s "$examples/pictures/cubes.png" ]
+oiiotool --info -v padded.exr | grep 'panoramaProjection: "eac fov=90 padding=8"'
+oiiotool --info -v seam.exr | grep 'anamorph:from: "dual_fisheye (as panoramaProjection says)"'
 # The film's ends are the pictures, but for what JPEG loses by writing them again.
 idiff -fail 0.05 -failpercent 1 -hardfail 0.3 -warn 1 film.0000.jpg round.png
 idiff -fail 0.05 -failpercent 1 -hardfail 0.3 -warn 1 film.0024.jpg long.png

@@ -189,13 +189,14 @@ double vfov_of_plane_height(Projection projection, double height, const Distance
 
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
              const std::string& prefix, const Distance& d, const LensModel& lens,
-             const VerticalField& vertical)
+             const VerticalField& vertical, double padding)
     : m_projection(projection),
       m_width(width),
       m_height(height),
       m_fov(fov),
       m_spacing(spacing),
-      m_vertical(vertical) {
+      m_vertical(vertical),
+      m_padding(padding) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
         throw Error(size_name(prefix), size, "must be 1x1 to 16777216x16777216 pixels");
@@ -208,6 +209,7 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     else
         m_pieces = {Piece{{0, 0, width, height}}};
     check_vertical(prefix, lens);
+    check_padding(prefix, lens);
     set_scale(prefix, lens);
     set_branches();
 }
@@ -247,8 +249,30 @@ void Chart::check_vertical(const std::string& prefix, const LensModel& lens) con
                     "must be a number up to " + std::to_string(kMaxSize));
 }
 
+void Chart::check_padding(const std::string& prefix, const LensModel& lens) const {
+    if (m_padding == 0) return;
+    const Box& face = m_pieces[0].box;
+    const FaceGrid grid = faces_of(m_projection);
+    const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
+    const bool is_round = lensed == Lensed::equidistant || lensed == Lensed::axial;
+    if (grid.joined || (grid.columns == 0 && !is_round))
+        throw Error(prefix + "padding", brief(m_padding),
+                    "must be of a layout of faces or of a fisheye, which " +
+                        std::string(name_of(m_projection)) + " is not");
+    if (lens.kind != LensModel::Kind::none || m_vertical.fov != 0)
+        throw Error(prefix + "padding", brief(m_padding),
+                    "must not be given with " + prefix + (m_vertical.fov != 0 ? "vfov" : "lens"));
+    // Angles of equi-angular faces then stay below 90 degrees up to the edges.
+    if (!(m_padding > 0 && 4 * m_padding < std::min(face.width(), face.height())))
+        throw Error(prefix + "padding", brief(m_padding),
+                    "must be 0 or more, and less than a quarter of the sides, " +
+                        std::to_string(face.width()) + "x" + std::to_string(face.height()) + " pixels");
+}
+
 void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
-    const int columns = m_pieces[0].box.width(), rows = m_pieces[0].box.height();
+    // A difference is off by a unit at most, which is within what width_units says.
+    const long double columns = m_pieces[0].box.width() - 2.0L * m_padding,
+                      rows = m_pieces[0].box.height() - 2.0L * m_padding;
     const long double plane =
         with_projection(m_projection, [&](auto formulas) { return formulas.width(m_fov, m_setting); });
     m_setting.half_width = static_cast<double>(plane / 2);
@@ -319,7 +343,8 @@ void Chart::set_branches() {
 Chart Chart::resized(int width, int height) const {
     VerticalField vertical = m_vertical;
     if (vertical.horizon) *vertical.horizon *= static_cast<double>(height) / m_height;
-    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance, {}, vertical);
+    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance, {}, vertical,
+                m_padding * width / m_width);
     chart.m_lens = m_lens;
     return chart;
 }

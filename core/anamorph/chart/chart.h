@@ -119,11 +119,13 @@ class Chart {
 
     /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
     /// takes the projection's default (default_fov). `d`: the numbers of projections that have some. `vertical`: only of images that
-    /// are one piece, and a horizon only of those without a lens. `prefix` is put before "fov", "vfov", "size", "d", "e" and "lens"
-    /// in errors, and "src" before "size" is "source ". Throws Error on a value out of range.
+    /// are one piece, and a horizon only of those without a lens. `padding`: how many pixels within each edge of the image, or of
+    /// every face, the field of view ends, less than a quarter of its sides; only of layouts of separate faces and of fisheyes
+    /// without a lens. `prefix` is put before "fov", "vfov", "size", "d", "e", "lens" and "padding" in errors, and "src" before "size"
+    /// is "source ". Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", const Distance& d = {},
-          const LensModel& lens = {}, const VerticalField& vertical = {});
+          const LensModel& lens = {}, const VerticalField& vertical = {}, double padding = 0);
 
     /// The horizontal field of view that a chart of this projection has unless it is given one, in degrees.
     static double default_fov(Projection projection);
@@ -139,6 +141,8 @@ class Chart {
     /// The numbers of projections that have some.
     const Distance& distance() const { return m_setting.distance; }
     PixelSpacing spacing() const { return m_spacing; }
+    /// How many pixels within each edge of the image, or of every face, the field of view ends; there the plane goes on.
+    double padding() const { return m_padding; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
     /// The lens; null where there is none, as in most pictures.
     const Lens* lens() const { return m_lens.get(); }
@@ -245,6 +249,7 @@ class Chart {
 
     void check_numbers(const std::string& prefix) const;
     void check_vertical(const std::string& prefix, const LensModel& lens) const;
+    void check_padding(const std::string& prefix, const LensModel& lens) const;
     void set_scale(const std::string& prefix, const LensModel& lens);
     void set_branches();
 
@@ -253,6 +258,7 @@ class Chart {
     double m_fov;
     PixelSpacing m_spacing;
     VerticalField m_vertical;
+    double m_padding;
     Setting m_setting;
     Counted m_counted = Counted::none;
     /// Pixels per unit of the plane, and units per pixel.

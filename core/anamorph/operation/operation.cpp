@@ -67,6 +67,7 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
                                           {" vfov=", facts.vfov},
                                           {" d=", facts.distance},
                                           {" e=", facts.second},
+                                          {" padding=", facts.padding},
                                           {" yaw=", facts.yaw},
                                           {" pitch=", facts.pitch},
                                           {" roll=", facts.roll}})

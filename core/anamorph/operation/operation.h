@@ -42,7 +42,7 @@ struct SourceFacts {
     /// in degrees, and its lens.
     std::optional<Projection> projection = {};
     std::string said_by = {};
-    std::optional<double> fov = {}, vfov = {}, distance = {}, second = {};  ///< its numbers d and e
+    std::optional<double> fov = {}, vfov = {}, distance = {}, second = {}, padding = {};  ///< its numbers d and e
     std::optional<LensModel> lens = {};
     /// The part of a panorama that it says it is, of an equirectangular one of 180 degrees from top to bottom.
     std::optional<PanoramaCrop> crop = {};
@@ -190,6 +190,8 @@ struct Operation {
     /// Finds the files that the side files name; the picture changes with them. May be null. Throws Error.
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
                           const SideFileReader& reader) = nullptr;
+    /// May the first source be six files, one a face of a cube (operation/face_files.h)?
+    bool reads_faces = false;
 
     /// Is it the name of a file that stands for the first source, and names images that are the sources?
     bool gathers(std::string_view file) const;

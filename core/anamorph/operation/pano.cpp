@@ -9,7 +9,9 @@
 #include <map>
 
 #include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/face_files.h"
 #include "anamorph/operation/film.h"
+#include "anamorph/operation/fisheye_pair.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/pano_formula.h"
 #include "anamorph/operation/pano_project.h"
@@ -53,7 +55,7 @@ std::string limited_fovs() {
     return text;
 }
 
-/// The words of face=: those of OpenEXR, in the order of the projection cubemap, and directions.
+/// The words of face=: those of OpenEXR, in the order of the projection cubemap, directions, and those of OpenGL for the same.
 struct FaceWord {
     const char* name;
     glm::dvec3 toward;
@@ -65,11 +67,16 @@ constexpr std::array<FaceWord, 6> kFaceWords = {{{"right", {1, 0, 0}},
                                                  {"down", {0, 1, 0}},
                                                  {"front", {0, 0, 1}},
                                                  {"back", {0, 0, -1}}}};
+constexpr std::array<const char*, 6> kOpenGlFaces = {"px", "nx", "py", "ny", "pz", "nz"};
 std::vector<std::string> face_names() {
     std::vector<std::string> names(kExrFaces.begin(), kExrFaces.end());
     for (const FaceWord& word : kFaceWords) names.emplace_back(word.name);
+    names.insert(names.end(), kOpenGlFaces.begin(), kOpenGlFaces.end());
     return names;
 }
+
+/// A quarter of the largest face, which has more.
+constexpr int kMostPadding = 1 << 18;
 
 /// Frames over time.
 ParameterTable film_rows() {
@@ -90,7 +97,10 @@ ParameterTable make_pano_table() {
     ParameterTable table = {
         image("src",
               "the source image; by default the recipe's name without .pano; in a name it stands last when "
-              "it has arguments of its own; a project of Hugin, x.pto, is the images that it names"),
+              "it has arguments of its own; a project of Hugin, x.pto, is the images that it names. With "
+              "{face} in it: six files, "
+              "one a face of a cube, with one of these in its place: " +
+                  face_words()),
         choice("from", "", projection_name_list(),
                "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
                "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
@@ -156,8 +166,16 @@ ParameterTable make_pano_table() {
         choice(
             "face", "", face_names(),
             "of to=cubemap, cubemap3x2 and cubecross: one face alone, as it stands there; size is then its "
-            "own. +x to -z are the faces of cubemap from above, as OpenEXR has them; the others say where "
-            "a face lies"),
+            "own. +x to -z are the faces of cubemap from above, as OpenEXR has them; right to back say where "
+            "a face lies; px, nx, py, ny, pz and nz are right to back, of the others alone, as OpenGL has "
+            "them"),
+        whole("srcpadding", "pixels", "0", 0, kMostPadding,
+              "of a source of faces, or a fisheye: how many pixels within each edge of every face its field "
+              "of view ends; there the face's own plane goes on; by default what the image says of itself, "
+              "else 0"),
+        whole("padding", "pixels", "0", 0, kMostPadding,
+              "of a picture of faces, or a fisheye: as many pixels within each edge of every face show what "
+              "goes on beyond its field of view, in the face's own plane; size counts them"),
         text("srclens",
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
@@ -195,7 +213,7 @@ ParameterTable make_pano_table() {
         alpha(),
         flip_v(),
     };
-    for (const ParameterTable& part : {project(), stereo(), film_rows(), ray_rows()})
+    for (const ParameterTable& part : {project(), fisheye_pair(), stereo(), film_rows(), ray_rows()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
@@ -474,18 +492,24 @@ Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const LensModel lens = lens_of(values, "lens");
     Size size = values.given("size") ? values.extent("size") : Size{0, -1};
     const Field field = target_field(values, to, d, size);
-    const auto chart = [&](int width, int height, const LensModel& through) {
-        return Chart(to, width, height, field.fov, PixelSpacing::edges, "", d, through, field.vertical);
+    const int padding = values.knows("padding") ? values.whole("padding") : 0;
+    const auto chart = [&](int width, int height, const LensModel& through, int within = 0) {
+        return Chart(to, width, height, field.fov, PixelSpacing::edges, "", d, through, field.vertical,
+                     within);
     };
     // Reports a field of view that the picture cannot have before a size is made of it.
     const int probe = 12;
     static_cast<void>(
         chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, field.fov)) : probe, {}));
-    if (!values.given("size"))
+    if (!values.given("size")) {
+        const FaceGrid grid = faces_of(to);
         size = default_size(to, field, d, lens.magnification(), source);
-    else if (size.height < 0)
+        size = {size.width + 2 * padding * std::max(1, grid.columns),
+                size.height + 2 * padding * std::max(1, grid.rows)};
+    } else if (size.height < 0) {
         size = natural_size(field, size.width);
-    return chart(size.width, size.height, lens);
+    }
+    return chart(size.width, size.height, lens, padding);
 }
 
 namespace {
@@ -499,12 +523,18 @@ glm::dvec3 direction_of_face(const ParameterValues& values, Projection to) {
     if (!has_names)
         throw Error("face", face,
                     "must be of to=cubemap, cubemap3x2 or cubecross, not " + std::string(name_of(to)));
+    const auto opengl = std::find(kOpenGlFaces.begin(), kOpenGlFaces.end(), face);
+    if (opengl != kOpenGlFaces.end()) {
+        if (to == Projection::cubemap)
+            throw Error("face", face, "must be +x to -z or right to back of to=cubemap");
+        return kFaceWords[static_cast<std::size_t>(opengl - kOpenGlFaces.begin())].toward;
+    }
     if (exr == kExrFaces.end())
         return std::find_if(kFaceWords.begin(), kFaceWords.end(),
                             [&](const FaceWord& word) { return word.name == face; })
             ->toward;
     if (to != Projection::cubemap)
-        throw Error("face", face, "must be right, left, up, down, front or back, or of to=cubemap");
+        throw Error("face", face, "must be right to back or px to nz, or of to=cubemap");
     const Chart cube(Projection::cubemap, 1, 6);
     return cube.pieces()[static_cast<std::size_t>(exr - kExrFaces.begin())].toward;
 }
@@ -517,7 +547,7 @@ struct FaceAlone {
 FaceAlone read_face(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
     const glm::dvec3 toward = direction_of_face(values, to);
-    for (const char* name : {"fov", "vfov", "focal", "sensor", "lens"})
+    for (const char* name : {"fov", "vfov", "focal", "sensor", "lens", "padding"})
         if (values.given(name))
             throw Error(name, printable(values.text(name)),
                         "must not be given with face: a face has 90 degrees");
@@ -605,8 +635,12 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
         cut.vertical.fov =
             vfov_by_fov(from, fov, facts.width - edge, facts.height - edge, d, facts.pixel_aspect);
     }
-    return {Chart(from, facts.width, facts.height, cut.fov, spacing, "src", d, srclens, cut.vertical),
-            reason + fov_reason + whole, cut.ahead};
+    const double padding = is_given(values, "srcpadding") ? values.whole("srcpadding")
+                           : facts.projection == from     ? facts.padding.value_or(0)
+                                                          : 0;
+    return {
+        Chart(from, facts.width, facts.height, cut.fov, spacing, "src", d, srclens, cut.vertical, padding),
+        reason + fov_reason + whole, cut.ahead};
 }
 
 Orientation read_held(const ParameterValues& values, const SourceFacts& facts, const TakenSource& source) {
@@ -658,7 +692,9 @@ Picture bumped_picture(const ReprojectRequest& request) {
 
 class Panos final : public Pictures {
   public:
-    explicit Panos(const ReprojectRequest& request) : m_request(request) {}
+    /// `pair`: of a source of two fisheyes that are drawn each by itself.
+    explicit Panos(const ReprojectRequest& request, const std::optional<FisheyePair>& pair = {})
+        : m_request(request), m_pair(pair) {}
 
     std::optional<PictureRequest> picture(int, int level) const override {
         ReprojectRequest request = m_request;
@@ -675,13 +711,14 @@ class Panos final : public Pictures {
         picture.pixels = pixels_of(request.options.output);
         picture.adds_alpha = request.options.adds_alpha;
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
-        if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest)
+        if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest && !m_pair)
             picture.moves = 0;
         if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(request.options.data);
         if (!request.machine) picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back(request.source.says());
-        picture.solve = [request] {
+        picture.solve = [request, pair = m_pair] {
             return solved(request.machine ? bumped_picture(request)
+                          : pair          ? pair->picture(request)
                                           : reprojected_picture(request.map(), request.options));
         };
         return picture;
@@ -691,7 +728,23 @@ class Panos final : public Pictures {
 
   private:
     ReprojectRequest m_request;
+    std::optional<FisheyePair> m_pair;
 };
+
+/// The pictures of a source that is one panorama.
+std::unique_ptr<const Pictures> panos(const OperationInput& input, const SourceFacts& facts) {
+    const bool is_formula = has_formula(input.values), is_pair = asks_for_fisheye_pair(input);
+    std::unique_ptr<const Pictures> pictures = film_pictures(
+        input,
+        [is_formula, is_pair, facts](const ParameterValues& values) -> std::unique_ptr<const Pictures> {
+            if (is_formula) return pictures_of_formula(values, facts);
+            const ReprojectRequest request = read_reproject_request(values, facts);
+            return std::make_unique<Panos>(
+                request, is_pair ? std::optional(FisheyePair(values, request.source.chart)) : std::nullopt);
+        });
+    if (!is_pair) return pictures;
+    return pictures_of_both(std::move(pictures), read_source(input.values, facts).chart);
+}
 
 }  // namespace
 
@@ -712,18 +765,12 @@ const Operation& pano_operation() {
             if (is_of_project(input.files)) return pictures_of_project(input);
             refuse_rows_of_projects(input.values);
             const Eyes eyes(input.values, input.sources[0].facts);
-            const bool is_formula = has_formula(input.values);
-            return eyes.pictures(
-                film_pictures(input,
-                              [is_formula, facts = eyes.facts_of_one()](
-                                  const ParameterValues& values) -> std::unique_ptr<const Pictures> {
-                                  if (is_formula) return pictures_of_formula(values, facts);
-                                  return reprojected_pictures(read_reproject_request(values, facts));
-                              }));
+            return eyes.pictures(panos(input, eyes.facts_of_one()));
         },
         .main_file = "src",
         .endings = {"pto"},
-        .linked = images_of_project};
+        .linked = images_of_project,
+        .reads_faces = true};
     return operation;
 }
 

@@ -12,6 +12,7 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     const int numbers = numbers_of(picture.projection());
     if (numbers > 0) projection += " d=" + shortest(picture.distance().d);
     if (numbers > 1) projection += " e=" + shortest(picture.distance().e);
+    if (picture.padding() != 0) projection += " padding=" + shortest(picture.padding());
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;
@@ -20,7 +21,8 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
         says.push_back({"textureformat", format});
         says.push_back({"oiio:updirection", "y"});
     };
-    if (picture.projection() == Projection::cubemap) environment("CubeFace Environment");
+    if (picture.projection() == Projection::cubemap && picture.padding() == 0)
+        environment("CubeFace Environment");
     // A whole turn, and as much of the poles as whole rows can say.
     const bool is_square = picture.vertical().fov == 0 || (picture.vertical().fov == 180 && w == 2 * h);
     const bool turn =

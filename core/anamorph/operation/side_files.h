@@ -12,10 +12,14 @@
 
 namespace anamorph {
 
+struct FaceFiles;
+
 /// A file. With an identity, which tells its states apart, what was read of it is kept.
 struct SideFile {
     std::string name, identity;
     bool image = false;  ///< the file is opened as an image, and so may be a recipe
+    /// The six files that the name stands for (operation/face_files.h), where it is not that of one.
+    std::shared_ptr<const FaceFiles> faces = {};
 };
 using SideFiles = std::map<std::string, SideFile>;  ///< the side files that were given, by parameter
 

@@ -106,10 +106,11 @@ glm::dmat3 rotation(const Orientation& orientation) {
 Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation,
                    const Orientation& held)
     : m_source(source), m_target(target) {
-    const std::pair<const char*, double> angles[] = {{"yaw", orientation.yaw},   {"pitch", orientation.pitch},
-                                                     {"roll", orientation.roll}, {"srcyaw", held.yaw},
-                                                     {"srcpitch", held.pitch},   {"srcroll", held.roll},
-                                                     {"srccrop", held.ahead}};
+    const std::pair<const char*, double> angles[] = {
+        {"yaw", orientation.yaw},   {"pitch", orientation.pitch}, {"roll", orientation.roll},
+        {"srcyaw", held.yaw},       {"srcpitch", held.pitch},     {"srcroll", held.roll},
+        {"srccrop", held.ahead},    {"lens yaw", held.lens[0]},   {"lens pitch", held.lens[1]},
+        {"lens roll", held.lens[2]}};
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "must be a finite angle in degrees");
@@ -117,6 +118,8 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
     if (orientation.face != glm::dmat3(1)) m_turn = of_face(m_turn, orientation.face);
     if (held.yaw != 0 || held.pitch != 0 || held.roll != 0) m_turn = relative(turn_of(held), m_turn);
     if (held.ahead != 0) m_turn = relative(turn_of({held.ahead}), m_turn);
+    if (const auto& [yaw, pitch, roll] = held.lens; yaw != 0 || pitch != 0 || roll != 0)
+        m_turn = relative(turn_of({yaw, pitch, roll}), m_turn);
     m_rotation = matrix_of(m_turn);
 }
 

@@ -20,6 +20,8 @@ struct Orientation {
     double ahead = 0;
     /// The axes (right, down, forward) of a face of a cube as columns, which is turned so before all others. Of targets alone.
     glm::dmat3 face{1};
+    /// The yaw, pitch and roll by which one lens of a camera of several is turned before all that. Of sources alone.
+    std::array<double, 3> lens{};
 };
 
 /// The rotation R of an orientation, between frames with x right, y down, z forward.
