@@ -20,8 +20,15 @@ Interval widened(const Interval& a, double by) {
     return a + Interval(-by, by);
 }
 
-bool is_within(const Interval& a, int from, int to) {
-    return a.lo >= from && a.hi <= to;
+double middle_of(double a) {
+    return a;
+}
+
+/// The pieces of a picture with its overscan.
+std::vector<Box> pieces_of(const MapLink& map, const Size& overscan) {
+    std::vector<Box> pieces = map.target_pieces();
+    if (pieces.size() == 1) pieces[0] = widened(pieces[0], overscan);
+    return pieces;
 }
 
 /// The part of an interval that lies in another.
@@ -36,9 +43,7 @@ ChainMap::ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const M
     : m_outer(std::move(outer)),
       m_inner(std::move(inner)),
       m_middle(middle),
-      m_pieces(m_inner->target_pieces()) {
-    if (m_pieces.size() == 1) m_pieces[0] = widened(m_pieces[0], middle.overscan);
-}
+      m_pieces(pieces_of(*m_inner, middle.overscan)) {}
 
 Point<double> ChainMap::shift_about(double x) const {
     const int period = m_outer->source_period();
@@ -46,24 +51,14 @@ Point<double> ChainMap::shift_about(double x) const {
     return {-std::floor(x / period) * period, 0};
 }
 
-int ChainMap::piece_at(double x, double y) const {
-    return piece_of({Interval(x), Interval(y)});
-}
-
-int ChainMap::piece_of(const Point<Interval>& box) const {
-    for (std::size_t i = 0; i < m_pieces.size(); ++i)
-        if (is_within(box.x, m_pieces[i].x0, m_pieces[i].x1) &&
-            is_within(box.y, m_pieces[i].y0, m_pieces[i].y1))
-            return static_cast<int>(i);
-    return -1;
-}
-
 bool ChainMap::misses(const Point<Interval>& box) const {
     const bool closes = m_outer->source_period() > 0;
-    return std::all_of(m_pieces.begin(), m_pieces.end(), [&](const Box& piece) {
+    const auto is_beyond = [&](const Box& piece) {
         return (!closes && (box.x.hi < piece.x0 || box.x.lo > piece.x1)) || box.y.hi < piece.y0 ||
                box.y.lo > piece.y1;
-    });
+    };
+    if (!m_pieces.have_gaps()) return is_beyond(m_pieces.frame());
+    return std::all_of(m_pieces.all().begin(), m_pieces.all().end(), is_beyond);
 }
 
 ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
@@ -80,13 +75,14 @@ ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
     return local;
 }
 
-Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Local& local,
+Cover ChainMap::cover(const Interval& of_x, const Interval& of_y, int piece, const Local& local,
                       bool across_seam) const {
+    const Interval x = widened(of_x, 0.5), y = widened(of_y, 0.5);
     const Cover outer = m_outer->cover(x, y, piece, local.outer, /*across_seam=*/true);
     if (outer != Cover::inside) return outer == Cover::outside ? Cover::outside : Cover::mixed;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
     if (misses(at)) return Cover::outside;
-    if (!local.inner || piece_of(at) != local.piece) return Cover::mixed;
+    if (!local.inner || m_pieces.holding(at.x, at.y) != local.piece) return Cover::mixed;
     const Cover inner = m_inner->cover(at.x, at.y, local.piece, local.inner, across_seam);
     return inner == Cover::partial ? Cover::mixed : inner;
 }
@@ -102,6 +98,8 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
     Point<Interval> points;
     if (cover == Cover::inside) {
         points = m_outer->read(Point<Interval>{x, y}, place);
+    } else if (const auto all = m_outer->points_of(x, y)) {
+        points = *all;
     } else {
         if (!is_point(x) || !is_point(y)) return HUGE_VAL;
         Point<double> at;
@@ -121,7 +119,7 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
     points = in_middle(Point<Interval>{widened(points.x, off_there), widened(points.y, off_there)}, shift);
     if (period == 0) return error_from(points, off_there, in_long_double);
     if (m_middle.has_poles) points.y = part_of(points.y, 0, m_inner->target_size().height);
-    if (is_within(points.x, 0, period)) return error_from(points, off_there, in_long_double);
+    if (points.x.lo >= 0 && points.x.hi <= period) return error_from(points, off_there, in_long_double);
     // Across the seam the computed point may lie at one end and the true one at the other: no matter where the inner map
     // goes on there.
     if (m_inner->target_period() != period || !(points.x.hi - points.x.lo < period)) return HUGE_VAL;
@@ -134,13 +132,40 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
 
 double ChainMap::error_from(const Point<Interval>& box, double off, bool in_long_double) const {
     if (misses(box)) return 0;
-    if (const int piece = piece_of(box); piece >= 0)
+    if (const int piece = m_pieces.holding(box.x, box.y); piece >= 0)
         return m_inner->exact_error(box.x, box.y, piece, off, in_long_double);
-    if (m_pieces.size() > 1) return HUGE_VAL;
+    if (m_pieces.all().size() > 1) return HUGE_VAL;
     // Points beyond the edges do not count, but for those that being off may bring there.
-    const Box& all = m_pieces[0];
+    const Box& all = m_pieces.frame();
     return m_inner->exact_error(part_of(box.x, all.x0 - off, all.x1 + off),
                                 part_of(box.y, all.y0 - off, all.y1 + off), 0, off, in_long_double);
 }
+
+template <class T>
+bool ChainMap::add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const {
+    using J = Jet1<T>;
+    const Interval x(p.x.c[0]), y(p.y.c[0]);
+    const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
+    if (m_outer->cover(x, y, piece, place, /*across_seam=*/true) != Cover::inside) return false;
+    Point<J> at = m_outer->read(p, place);
+    at = in_middle(at, shift_about(middle_of(at.x.c[0])));
+    if (!m_outer->add_edges(p, piece, edges)) return false;
+    if (m_pieces.have_gaps()) return true;
+    const Box& frame = m_pieces.frame();
+    if (m_outer->source_period() == 0) {
+        edges.push_back(at.x - double(frame.x0));
+        edges.push_back(double(frame.x1) - at.x);
+    }
+    if (!m_middle.has_poles) {
+        edges.push_back(at.y - double(frame.y0));
+        edges.push_back(double(frame.y1) - at.y);
+    }
+    // The inner map's own edges, of its nearest piece.
+    const int nearest = piece_at(std::clamp<double>(middle_of(at.x.c[0]), frame.x0, frame.x1),
+                                 std::clamp<double>(middle_of(at.y.c[0]), frame.y0, frame.y1));
+    return nearest >= 0 && m_inner->add_edges(at, nearest, edges);
+}
+template bool ChainMap::add_edges(const Point<Jet1<double>>&, int, std::vector<Jet1<double>>&) const;
+template bool ChainMap::add_edges(const Point<Jet1<Interval>>&, int, std::vector<Jet1<Interval>>&) const;
 
 }  // namespace anamorph

@@ -4,7 +4,8 @@
 //
 // It is one formula, that of the inner map at what the outer one gives, so that derivatives (the chain rule), bounds over boxes
 // and rounding come from reading it with other numbers, as those of any other map. Where the picture in the middle has edges
-// or holes the chain has no source point; the edges are where computed points cross them.
+// or holes the chain has no source point; the edges are where computed points cross them. How much of a pixel lies within
+// edges is told beside (add_edges()), so that they are not drawn pixel by pixel.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "anamorph/chain/piece_finder.h"
 #include "anamorph/plan/map_link.h"
 
 namespace anamorph {
@@ -61,6 +63,7 @@ class ChainMap {
     int target_period() const { return m_outer->target_period(); }
     bool reads_computed_points() const { return m_outer->reads_computed_points(); }
     Local local_around(double x, double y, int piece) const;
+    /// Of whole pixels about the centres in a box: those that an edge crosses are drawn in part.
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
 
     template <class T>
@@ -81,6 +84,9 @@ class ChainMap {
     double exact_error(const Interval& x, const Interval& y, int piece, double off = 0) const {
         return exact_error(x, y, piece, off, std::is_same_v<Real, long double>);
     }
+    /// MapLink::add_edges() of double and of Interval. A picture in the middle with gaps between its pieces adds none.
+    template <class T>
+    bool add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const;
 
   private:
     /// A point of the picture in the middle, from the outer map's.
@@ -100,9 +106,8 @@ class ChainMap {
     }
     /// The shift into the picture in the middle of the outer map's points near x.
     Point<double> shift_about(double x) const;
-    /// The piece of the picture in the middle that holds a point, or a box; -1 where there is none.
-    int piece_at(double x, double y) const;
-    int piece_of(const Point<Interval>& box) const;
+    /// The piece of the picture in the middle that holds a point; -1 where there is none.
+    int piece_at(double x, double y) const { return m_pieces.holding(Interval(x), Interval(y)); }
     /// Is all of a box outside of the picture in the middle, which may close across?
     bool misses(const Point<Interval>& box) const;
 
@@ -113,7 +118,7 @@ class ChainMap {
 
     std::shared_ptr<const MapLink> m_outer, m_inner;
     MiddlePicture m_middle;
-    std::vector<Box> m_pieces;  ///< of the picture in the middle
+    PieceFinder m_pieces;  ///< of the picture in the middle
 };
 
 }  // namespace anamorph

@@ -1,10 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/chain/chain_plan.h"
 
+#include "anamorph/chain/middle_edges.h"
 #include "anamorph/plan/formula_plan_impl.h"
 
 namespace anamorph {
 
 template class FormulaPlan<ChainMap>;
+
+void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<PartialPixel>& pixels) const {
+    using D = Jet1<double>;
+    using I = Jet1<Interval>;
+    const auto edges_at = [&](double x, double y, std::vector<D>& to) {
+        return map().add_edges(Point<D>{D::variable(x, 1, 0), D::variable(y, 0, 1)}, piece, to);
+    };
+    std::vector<D> middle, edges;
+    std::vector<I> over;
+    const Interval x(block.x0, block.x1), y(block.y0, block.y1);
+    const bool are_known =
+        edges_at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi), middle) &&
+        map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, over) &&
+        middle.size() == over.size();
+    const EdgesOverBox near(block, middle, over);
+    for (int j = part.y0; j < part.y1; ++j)
+        for (int i = part.x0; i < part.x1; ++i) {
+            if (are_known && !near.may_cross(i, j)) continue;
+            edges.clear();
+            if (!edges_at(i + 0.5, j + 0.5, edges)) continue;
+            const PartialPixel pixel = part_within(i, j, edges);
+            if (pixel.share > 0 && pixel.share < 1) pixels.push_back(pixel);
+        }
+}
 
 }  // namespace anamorph

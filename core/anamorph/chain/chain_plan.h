@@ -4,11 +4,19 @@
 
 #include "anamorph/chain/chain_map.h"
 #include "anamorph/plan/formula_plan.h"
+#include "anamorph/plan/partial_pixels.h"
 
 namespace anamorph {
 
 extern template class FormulaPlan<ChainMap>;
 
-using ChainPlan = FormulaPlan<ChainMap>;
+class ChainPlan final : public FormulaPlan<ChainMap>, public PartialPixels {
+  public:
+    using FormulaPlan<ChainMap>::FormulaPlan;
+
+    /// By the maps' derivatives in the middle of a pixel: edges are straight lines in it. Where the outer map is not smooth in a
+    /// pixel, that is not partial.
+    void find(const Box& block, int piece, const Box& part, std::vector<PartialPixel>& pixels) const override;
+};
 
 }  // namespace anamorph

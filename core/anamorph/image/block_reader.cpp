@@ -369,7 +369,8 @@ BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border
       m_points(source, border),
       m_apart(source, border),
       m_chooser(source),
-      m_values(static_cast<std::size_t>(kMaxRow) * static_cast<std::size_t>(source.channels()) + 16) {}
+      m_values(static_cast<std::size_t>(kMaxRow) * static_cast<std::size_t>(source.channels()) + 16),
+      m_partial(filter == Filter::nearest ? nullptr : dynamic_cast<const PartialPixels*>(&map)) {}
 
 bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
     if (in_double(block)) {
@@ -398,10 +399,36 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
 }
 
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas) {
-    const bool straight = m_source.unassociated_alpha() < 0;
     const Row store = [&](int x, int y, int count, const float* values, float one) {
         canvas.store(x, y, count, values, one);
     };
+    return draw_whole(block, part, store, canvas) &&
+           (!m_partial || block.kind != Block::Kind::exact || draw_partial(block, part, store));
+}
+
+/// The partial pixels of an exact block: by a footprint about the middle of what is drawn, as large as that.
+bool BlockReader::draw_partial(const Block& block, const Box& part, const Row& row) {
+    m_partial_pixels.clear();
+    m_partial->find(block.box, block.piece, part, m_partial_pixels);
+    for (const PartialPixel& pixel : m_partial_pixels) {
+        Point<double> p;
+        int piece;
+        if (!m_map.exact(pixel.middle.x, pixel.middle.y, block.piece, p, piece)) continue;
+        Jacobian own = m_map.jacobian(pixel.middle.x, pixel.middle.y, block.piece);
+        for (double* d : {&own.x_i, &own.y_i}) *d *= pixel.width;
+        for (double* d : {&own.x_j, &own.y_j}) *d *= pixel.height;
+        if (!m_points.sample(m_filter, m_chooser, own, piece, p.x, p.y, m_values.data())) return false;
+        for (int c = 0; c < m_source.channels(); ++c) {
+            float& value = m_values[static_cast<std::size_t>(c)];
+            value = static_cast<float>(value * pixel.share);
+        }
+        finish(pixel.x, pixel.y, 1, 1, row);
+    }
+    return true;
+}
+
+bool BlockReader::draw_whole(const Block& block, const Box& part, const Row& store, const Canvas& canvas) {
+    const bool straight = m_source.unassociated_alpha() < 0;
     if (m_filter == Filter::summed_area) return rows(block, part, store);
     if (in_double(block)) {
         read_in_double(block);

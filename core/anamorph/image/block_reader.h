@@ -16,6 +16,7 @@
 #include "anamorph/image/split_points.h"
 #include "anamorph/image/window.h"
 #include "anamorph/plan/block.h"
+#include "anamorph/plan/partial_pixels.h"
 
 namespace anamorph {
 
@@ -106,7 +107,8 @@ class BlockReader {
     /// already.
     bool rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
 
-    /// Draws `part` of a block.
+    /// Draws `part` of a block. Unless one point is read, pixels that are partial (plan/partial_pixels.h) have as much of their
+    /// parts' mean as these fill.
     bool draw(const Block& block, const Box& part, const Canvas& canvas);
 
   private:
@@ -135,6 +137,8 @@ class BlockReader {
     struct Span;
     enum class Got { window, too_large, failed };
 
+    bool draw_whole(const Block& block, const Box& part, const Row& row, const Canvas& canvas);
+    bool draw_partial(const Block& block, const Box& part, const Row& row);
     Got draw_polynomial(const Block& block, const Box& part, const Canvas& canvas);
     template <class Real>
     bool filtering_of(const Block& block, const PixelPoints<Real>& points, Filtering& f) const;
@@ -214,6 +218,8 @@ class BlockReader {
     std::vector<std::int32_t> m_texels;  ///< the texels that points fall into; m_rests has the rests
     std::vector<float> m_rests;
     std::vector<Point<int>> m_over_edge;
+    const PartialPixels* m_partial;  ///< of the map, or null
+    std::vector<PartialPixel> m_partial_pixels;
 };
 
 }  // namespace anamorph

@@ -34,6 +34,7 @@ class InversePlan final : public WarpPlan {
     /// The number of source points of a target point less one; at least 1 where they cannot be told apart.
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
+    std::string why_unlinked() const override { return "has a mesh that pushes"; }
 
     static constexpr double kFoldSize = 1.0 / 4;
     /// The largest number of visits for a pixel near a fold.

@@ -207,13 +207,18 @@ Jacobian MeshPlan::jacobian(double x, double y, int) const noexcept {
 }
 
 std::shared_ptr<const MapLink> MeshPlan::link() const {
-    const bool is_free = m_scheme == WarpScheme::automatic || m_scheme == WarpScheme::exact;
-    if (!is_free || m_lattice || !CellMap::serves(m_mesh)) return nullptr;
+    if (!joins(m_scheme) || m_lattice || !CellMap::serves(m_mesh)) return nullptr;
     PlanOptions options;
     options.scheme = m_scheme == WarpScheme::exact ? Scheme::exact : Scheme::automatic;
     options.tol = m_tol;
     options.cull = false;
     return std::make_shared<const LinkOf<CellMap>>(CellMap(std::make_shared<const Mesh>(m_mesh)), options);
+}
+
+std::string MeshPlan::why_unlinked() const {
+    return joins(m_scheme)
+               ? "has a mesh of cells of less than " + std::to_string(CellMap::kLeastPixels) + " pixels"
+               : kUnjoinedScheme;
 }
 
 float MeshPlan::folds(double x, double y) const noexcept {

@@ -21,11 +21,12 @@
 #include "anamorph/mesh/mesh.h"
 #include "anamorph/plan/block.h"
 #include "anamorph/plan/scheme.h"
+#include "anamorph/plan/unlinked.h"
 
 namespace anamorph {
 
 /// The source points of a warp, in blocks, and where it folds.
-class WarpPlan : public BlockMap {
+class WarpPlan : public BlockMap, public Unlinked {
   public:
     using BlockMap::BlockMap;
 
@@ -34,6 +35,12 @@ class WarpPlan : public BlockMap {
     /// The number of pixels of a box that are folded (folds is not 0).
     virtual std::int64_t folded_pixels(const Box& box) const;
 };
+
+/// Does a scheme let a warp be joined with others? Else it is asked for by itself.
+constexpr bool joins(WarpScheme scheme) {
+    return scheme == WarpScheme::automatic || scheme == WarpScheme::exact;
+}
+inline constexpr const char* kUnjoinedScheme = "has a scheme that does not join";
 
 class ResidualTables;
 
@@ -56,6 +63,7 @@ class MeshPlan final : public WarpPlan {
     std::int64_t folded_pixels(const Box& box) const override;
     /// Null where its cells are small, or another scheme than automatic or exact is asked for.
     std::shared_ptr<const MapLink> link() const override;
+    std::string why_unlinked() const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

@@ -25,6 +25,7 @@ class ScatteredPlan final : public WarpPlan {
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
+    std::string why_unlinked() const override { return "has pairs of points"; }
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

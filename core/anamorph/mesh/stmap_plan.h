@@ -7,8 +7,8 @@
 #include <memory>
 #include <mutex>
 
-#include "anamorph/mesh/mesh_lattice.h"
 #include "anamorph/mesh/mesh_plan.h"
+#include "anamorph/mesh/st_lattice.h"
 
 namespace anamorph {
 
@@ -30,24 +30,21 @@ class StMapPlan final : public WarpPlan {
                       float* y) const noexcept override;
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
+    /// Null where another scheme than automatic or exact is asked for, and where its samples are so rough that most pixels of a
+    /// chain would be exact.
+    std::shared_ptr<const MapLink> link() const override;
+    std::string why_unlinked() const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
-    const float* sample(int column, int row) const;
-    Point<double> point(int column, int row) const;
-    Point<double> displacement(int column, int row) const;
-    Jacobian jacobian(const LatticeWeights& across, const LatticeWeights& down) const;
     Jacobian jacobian_by_neighbors(int column, int row) const;
-    double rounding() const;
     double orientation() const;
 
-    std::shared_ptr<const StSamples> m_samples;
-    Size m_source;
-    Point<double> m_scale;
-    double m_amount, m_tol;
-    std::vector<double> m_x, m_y;  ///< the lines of the lattice: edge, centres of pixels, edge
+    std::shared_ptr<const StLattice> m_lattice;
+    WarpScheme m_scheme;
+    double m_given_tol, m_tol;  ///< m_tol: 0 where every pixel is exact
     mutable std::once_flag m_turned;
     mutable double m_orientation = 1;
 };

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -83,6 +84,17 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
     /// themselves off by up to `off` and lie in the box with where they belong. As FormulaMap's exact_error else.
     virtual double exact_error(const Interval& x, const Interval& y, int piece, double off,
                                bool in_long_double) const = 0;
+
+    /// A box that holds all source points of a box of the target, the true ones and those that exact() finds, though they lie on
+    /// no one branch; none where that is not known, or where some have none.
+    virtual std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const = 0;
+
+    /// Appends how far a target point lies within each edge of the pictures that the map leads through on its way, if there are
+    /// such, in pixels of those: negative beyond. False where that is not known of all points of a box.
+    virtual bool add_edges(const Point<Jet1<double>>& p, int piece,
+                           std::vector<Jet1<double>>& edges) const = 0;
+    virtual bool add_edges(const Point<Jet1<Interval>>& p, int piece,
+                           std::vector<Jet1<Interval>>& edges) const = 0;
 };
 
 /// The link of a map.
@@ -135,8 +147,28 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
     Point<T> formula(const Point<T>& p, const LinkPlace& place) const {
         return m_map(p.x, p.y, local(place));
     }
+    std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const override {
+        if constexpr (requires { m_map.points_of(x, y); })
+            return m_map.points_of(x, y);
+        else
+            return {};
+    }
+    bool add_edges(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const override {
+        return add_edges_of_map(p, piece, edges);
+    }
+    bool add_edges(const Point<Jet1<Interval>>& p, int piece,
+                   std::vector<Jet1<Interval>>& edges) const override {
+        return add_edges_of_map(p, piece, edges);
+    }
 
   private:
+    template <class J>
+    bool add_edges_of_map(const Point<J>& p, int piece, std::vector<J>& edges) const {
+        if constexpr (requires { m_map.add_edges(p, piece, edges); })
+            return m_map.add_edges(p, piece, edges);
+        else
+            return true;
+    }
     /// Bounds how much farther apart source points are than points of a box; infinite where the map is not smooth.
     double stretch(const Interval& x, const Interval& y, int piece) const {
         const Local local = m_map.local_around(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi), piece);
