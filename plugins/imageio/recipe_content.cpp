@@ -384,10 +384,10 @@ class RecipeContent final : public Content {
     void make_stored_stacks(std::vector<OpenSource>& images, const std::vector<ImageSpec>& specs,
                             const std::string& identity) {
         for (const OpenSource& open : images) keep_stored(open);
-        const SourceFaces faces = m_pictures->faces();
         static auto& stacks = *new Memo<const SourceStacks>(2);
         m_stored_stacks = stacks.get(identity, [&] {
-            return std::make_shared<const SourceStacks>(make_source_stacks(taken(images), specs, faces, ""));
+            return std::make_shared<const SourceStacks>(
+                make_source_stacks(taken(images), specs, *m_pictures, ""));
         });
     }
 

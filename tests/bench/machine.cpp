@@ -3,7 +3,9 @@
 //
 // A cylinder of 360 degrees whose texture is 256 x 256 is seen level with 90 degrees, on a screen of 512 x 512 or less.
 // Errors are in pixels of that texture, 256 times the paper's. `clamped` and `bordered` are the two edges of a bump map,
-// `read_back` is clamped and read through a texture of 16 bits, as the paper did. Scheme `exact` is the formula.
+// `read_back` is clamped and read through a texture of 16 bits, as the paper did. Scheme `exact` is the formula. `pitched` is a
+// view of 60 degrees, 15 degrees up, of a cylinder of 2048 x 1024, `pitched-pixel` the same, projected at each pixel (4.4.1), and
+// `planes-N` a level view of 120 degrees by so many planes.
 //
 // `shader-NxN` are warps by meshes of N x N cells, drawn by the pixel shader with tables of so many texels and registers of
 // a format; errors in pixels of 256 x 256 or less. `blocks-N` are drapes by the machine of 1987 (block_machine.cpp).
@@ -24,14 +26,43 @@ namespace {
 
 constexpr int kTexture = 256, kMostScreen = 512;
 
+/// 355 / 113 is pi up to 3e-7: so high is the view, and so wide the cylinder.
+Panorama published_view(int screen) {
+    return Panorama(Chart(Projection::cylindrical, 355, 113),
+                    Chart(Projection::rectilinear, screen, screen, 90));
+}
+Panorama pitched_view(int screen) {
+    return Panorama(Chart(Projection::cylindrical, 2048, 1024),
+                    Chart(Projection::rectilinear, screen, screen, 60), {0, 15, 0});
+}
+Panorama wide_view(int screen) {
+    return Panorama(Chart(Projection::cylindrical, 2048, 1024),
+                    Chart(Projection::rectilinear, screen, screen / 2, 120));
+}
+
 struct MachineCase {
     std::string name;
-    BumpUnit::Edge edge;
+    Panorama (*view)(int screen);
+    Size texture;  ///< errors are in its pixels
+    BumpUnit unit;
     bool read_back;
 };
-const MachineCase kCases[] = {{"clamped", BumpUnit::Edge::clamp, false},
-                              {"bordered", BumpUnit::Edge::border, false},
-                              {"read_back", BumpUnit::Edge::clamp, true}};
+std::vector<MachineCase> cases() {
+    BumpUnit unit, bordered, pixel;
+    bordered.edge = BumpUnit::Edge::border;
+    pixel.projecting = BumpUnit::Projecting::pixel;
+    const Size published{kTexture, kTexture}, large{2048, 1024};
+    std::vector<MachineCase> all = {{"clamped", published_view, published, unit, false},
+                                    {"bordered", published_view, published, bordered, false},
+                                    {"read_back", published_view, published, unit, true},
+                                    {"pitched", pitched_view, large, unit, false},
+                                    {"pitched-pixel", pitched_view, large, pixel, false}};
+    for (const int planes : {1, 2, 4}) {
+        unit.planes.count = planes;
+        all.push_back({"planes-" + std::to_string(planes), wide_view, large, unit, false});
+    }
+    return all;
+}
 
 struct Contender {
     std::string name;
@@ -61,19 +92,6 @@ std::vector<Contender> contenders() {
     return all;
 }
 
-/// 355 / 113 is pi up to 3e-7: so high is the view, and so wide the cylinder.
-Panorama view(int screen) {
-    return Panorama(Chart(Projection::cylindrical, 355, 113),
-                    Chart(Projection::rectilinear, screen, screen, 90));
-}
-
-/// body(i, j, s, t) for all pixels.
-template <class Body>
-void each_pixel(int screen, const Body& body) {
-    for (int j = 0; j < screen; ++j)
-        for (int i = 0; i < screen; ++i) body(i, j, (i + 0.5) / screen, (j + 0.5) / screen);
-}
-
 Point<double> exact_coordinates(const Panorama& map, int i, int j) {
     Point<double> at{};
     int piece = 0;
@@ -84,45 +102,49 @@ Point<double> exact_coordinates(const Panorama& map, int i, int j) {
 /// A view drawn by contenders, as texture coordinates.
 class Screen {
   public:
-    explicit Screen(int side)
-        : m_side(side),
-          m_map(view(side)),
-          m_drawn(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
+    explicit Screen(const Panorama& map)
+        : m_map(map),
+          m_drawn(static_cast<std::size_t>(map.target().width()) *
+                  static_cast<std::size_t>(map.target().height())) {}
 
     const Panorama& map() const { return m_map; }
+    std::size_t pixels() const { return m_drawn.size(); }
     void draw_exactly() {
-        each_pixel(m_side, [&](int i, int j, double, double) { put(i, j, exact_coordinates(m_map, i, j)); });
+        each_pixel([&](int i, int j, Point<double>& to) { to = exact_coordinates(m_map, i, j); });
     }
-    void draw(const BumpStage& stage, const ReadBack* back) {
-        each_pixel(m_side, [&](int i, int j, double s, double t) {
-            const Point<double> used = stage(s, t).at;
-            put(i, j, back ? (*back)(used) : used);
+    void draw(const BumpedPanorama& drawn, const ReadBack* back) {
+        const double width = m_map.target().width(), height = m_map.target().height();
+        each_pixel([&](int i, int j, Point<double>& to) {
+            const Point<double> used = drawn.at((i + 0.5) / width, (j + 0.5) / height).at;
+            to = back ? (*back)(used) : used;
         });
     }
     /// Of what was drawn last, in pixels of the texture.
-    Accuracy accuracy() const {
+    Accuracy accuracy(const Size& texture) {
         std::vector<float> errors;
-        each_pixel(m_side, [&](int i, int j, double, double) {
-            const Point<double> off = m_drawn[index(i, j)] - exact_coordinates(m_map, i, j);
-            errors.push_back(static_cast<float>(kTexture * std::hypot(off.x, off.y)));
+        each_pixel([&](int i, int j, const Point<double>& at) {
+            const Point<double> off = at - exact_coordinates(m_map, i, j);
+            errors.push_back(static_cast<float>(std::hypot(texture.width * off.x, texture.height * off.y)));
         });
         return accuracy_of(errors);
     }
 
   private:
-    std::size_t index(int i, int j) const {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(m_side) + static_cast<std::size_t>(i);
+    /// body(i, j, its coordinates) for all pixels.
+    template <class Body>
+    void each_pixel(const Body& body) {
+        auto to = m_drawn.begin();
+        for (int j = 0; j < m_map.target().height(); ++j)
+            for (int i = 0; i < m_map.target().width(); ++i) body(i, j, *to++);
     }
-    void put(int i, int j, const Point<double>& at) { m_drawn[index(i, j)] = at; }
 
-    int m_side;
     Panorama m_map;
     std::vector<Point<double>> m_drawn;
 };
 
 void measure(const Settings& settings, Report& report, const MachineCase& which) {
     const int side = std::min(settings.size, kMostScreen);
-    Screen screen(side);
+    Screen screen(which.view(side));
     const ReadBack back;
     std::vector<Row> rows(1);
     rows[0].scheme = "exact";
@@ -131,12 +153,14 @@ void measure(const Settings& settings, Report& report, const MachineCase& which)
     for (const Contender& contender : contenders()) {
         if (!settings.wants_scheme(contender.name)) continue;
         BumpUnit unit = contender.unit;
-        unit.edge = which.edge;
-        const auto stage = std::make_shared<BumpStage>(screen.map(), 0, unit);
-        timed.push_back({[&, stage] { screen.draw(*stage, which.read_back ? &back : nullptr); }, 1});
+        unit.edge = which.unit.edge;
+        unit.projecting = which.unit.projecting;
+        unit.planes = which.unit.planes;
+        const auto drawn = std::make_shared<BumpedPanorama>(screen.map(), unit);
+        timed.push_back({[&, drawn] { screen.draw(*drawn, which.read_back ? &back : nullptr); }, 1});
         timed.back().draw();
         rows.emplace_back().scheme = contender.name;
-        rows.back().error = screen.accuracy();
+        rows.back().error = screen.accuracy(which.texture);
     }
     const std::vector<Times> times = time_interleaved(timed, std::min(settings.rounds, 3));
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -144,8 +168,8 @@ void measure(const Settings& settings, Report& report, const MachineCase& which)
         row.op = "machine";
         row.case_name = which.name;
         row.size = side;
-        row.ns_per_px = times[k].median / (double(side) * side);
-        row.best_ns_per_px = times[k].best / (double(side) * side);
+        row.ns_per_px = times[k].median / double(screen.pixels());
+        row.best_ns_per_px = times[k].best / double(screen.pixels());
         row.ratio_to_exact = times[0].median / times[k].median;
         row.exact_fraction = k == 0 ? 1 : 0;
         report.add(row);
@@ -213,7 +237,7 @@ void measure_shader(const Settings& settings, Report& report, int cells) {
 void run(const Settings& settings, Report& report) {
     for (const int side : {512, 1024}) measure_blocks(settings, report, side);
     for (const int cells : {4, 12}) measure_shader(settings, report, cells);
-    for (const MachineCase& which : kCases)
+    for (const MachineCase& which : cases())
         if (settings.wants_case(which.name)) measure(settings, report, which);
     const Row *clamped = report.find("clamped", "embm-256-16bit"),
               *bordered = report.find("bordered", "embm-256-16bit"),
@@ -231,6 +255,9 @@ void run(const Settings& settings, Report& report) {
     if (clamped && bordered && clamped->size == kMostScreen)
         report.add_limit("a border of one texel: largest error over that without", 0.05,
                          bordered->error.max / clamped->error.max);
+    if (const Row* pitched = report.find("pitched", "embm-256-16bit"))
+        report.add_limit("a pitched view, 256, 16 bits: mean error (pixels of 2048 x 1024)", 0.001,
+                         pitched->error.mean);
 }
 
 const RegisterOp registered({"machine", run, nullptr});

@@ -112,6 +112,7 @@ class ParameterEnds : public InFolder {
             add("to", "cubemap");
             arguments.push_back({"size", "4x4"});
         }
+        if (operation.name == "pano" && value == "hardware") add("to", "rectilinear");
         if (key == "eye") add("stereo", "side-by-side");
         if (key == "samples") add("shutter", "1");
         if (key == "alpha" && operation.name == "morph") add("wrap", "black");

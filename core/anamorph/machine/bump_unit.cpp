@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 #include "anamorph/error.h"
 #include "anamorph/panorama/panorama_plan.h"
@@ -11,11 +12,26 @@
 namespace anamorph::machine {
 namespace {
 
-/// A texture holds one image, of limited size.
+/// What section 4.4 says of a card.
+struct CardFacts {
+    BumpCard card;
+    const char* name;
+    bool per_pixel;  ///< can it perturb coordinates that both stages project per pixel (4.4.1)?
+    bool sixteen;    ///< has it bump maps of V16U16 (4.4.3)?
+};
+constexpr CardFacts kCards[] = {
+    {BumpCard::reference, "reference", true, true},   {BumpCard::geforce3, "geforce3", false, false},
+    {BumpCard::geforce4, "geforce4", true, false},    {BumpCard::radeon, "radeon", false, false},
+    {BumpCard::radeon8500, "radeon8500", true, true}, {BumpCard::radeon9700, "radeon9700", true, true}};
+
+const CardFacts* facts_of(BumpCard card) {
+    const auto* found = std::find_if(std::begin(kCards), std::end(kCards),
+                                     [&](const CardFacts& f) { return f.card == card; });
+    return found == std::end(kCards) ? nullptr : found;
+}
+
 const Panorama& checked(const Panorama& map, const BumpUnit& unit) {
-    if (map.source().pieces().size() > 1)
-        throw Error("machine: the source must be one image and no cube map; its projection is " +
-                    std::string(name_of(map.source().projection())));
+    check_card(unit);
     check_texture_side(map.source_size(), unit.texture_side);
     return map;
 }
@@ -27,15 +43,6 @@ PlanOptions exactly() {
     return options;
 }
 
-/// The linear part of pixels, in texture coordinates and for screen coordinates from -1 to 1.
-LinearPart in_texture_coordinates(const LinearPart& pixels, const Box& box, const Size& source) {
-    const auto divided = [&](const Point<double>& p, double k) {
-        return Point<double>{p.x * k / source.width, p.y * k / source.height};
-    };
-    return {0, 0, divided(pixels.origin, 1), divided(pixels.right, 0.5 * box.width()),
-            divided(pixels.down, 0.5 * box.height())};
-}
-
 std::vector<std::array<double, 2>> own_coordinates(int size, const NumberFormat& format) {
     std::vector<std::array<double, 2>> texels;
     const auto at = [&](int i) { return nearest(format, (i + 0.5) / size); };
@@ -44,47 +51,87 @@ std::vector<std::array<double, 2>> own_coordinates(int size, const NumberFormat&
     return texels;
 }
 
+/// Does a bump map have texels that lie outside of the plane's range?
+bool has_border(const BumpUnit& unit) {
+    return unit.edge == BumpUnit::Edge::border && unit.size > 2;
+}
+
+glm::dvec3 eye_ray(const EyeCorners& eye, double s, double t) {
+    return {eye.first + (eye.last - eye.first) * glm::dvec2(s, t), 1.0};
+}
+
 }  // namespace
 
-BumpStage::BumpStage(const Panorama& map, int piece, const BumpUnit& unit) : m_unit(unit) {
-    const LinearPart linear = linear_part(map, piece);
-    const Box box = map.target_pieces()[static_cast<std::size_t>(piece)];
-    m_linear = in_texture_coordinates(linear, box, map.source_size());
-    if (unit.size > 0) make_bumps(map, piece, linear);
+void check_card(const BumpUnit& unit) {
+    const CardFacts* card = facts_of(unit.card);
+    if (!card) return;
+    const std::string with = std::string(" with card=") + card->name;
+    if (unit.projecting == BumpUnit::Projecting::pixel && !card->per_pixel)
+        throw Error("machine: projecting", "pixel",
+                    "must be vertex" + with + ", which perturbs no coordinates that are projected per pixel");
+    const bool fits = unit.texel == kSigned8 || (unit.texel == kSigned16 && card->sixteen);
+    if (!fits && unit.size > 0)
+        throw Error("machine: texel", name_of(unit.texel),
+                    std::string("must be V8U8") + (card->sixteen ? " or V16U16" : "") + with);
 }
 
-/// The residuals at the texels' centres, in texture coordinates.
-std::vector<std::array<double, 2>> BumpStage::residuals(const Panorama& map, int piece,
-                                                        const LinearPart& linear) const {
-    const Box box = map.target_pieces()[static_cast<std::size_t>(piece)];
-    const Size source = map.source_size();
-    std::vector<std::array<double, 2>> all;
+NumberFormat texel_of(BumpCard card) {
+    const CardFacts* facts = facts_of(card);
+    return facts && !facts->sixteen ? kSigned8 : kSigned16;
+}
+
+std::string name_of(BumpCard card) {
+    const CardFacts* facts = facts_of(card);
+    return facts ? facts->name : "any";
+}
+
+BumpStage::BumpStage(const Chart& source, const Chart& target, const ProjectionPlane& plane,
+                     const BumpUnit& unit)
+    : m_unit(unit), m_eye(eye_corners(target)) {
+    set_matrices(plane);
+    set_corners(plane);
+    if (unit.size > 0) make_bumps(source, plane);
+}
+
+/// Eq. 4.5, by rows: those of M0 lead to u q, v q and q.
+void BumpStage::set_matrices(const ProjectionPlane& plane) {
+    const glm::dmat3 rows = glm::transpose(plane.from_eye);
+    // Of the bump map the range covers all but the outermost texels, or all of it.
+    const double covered = has_border(m_unit) ? (m_unit.size - 2.0) / m_unit.size : 1;
+    const auto matrix = [&](const glm::dvec2& by, const glm::dvec2& centre) {
+        return glm::transpose(
+            glm::dmat3(rows[0] * by.x + rows[2] * centre.x, rows[1] * by.y + rows[2] * centre.y, rows[2]));
+    };
+    m_linear = matrix({plane.right, plane.down}, plane.centre);
+    m_bump = matrix(0.5 * covered / glm::dvec2(plane.x_max, plane.y_max), glm::dvec2(0.5));
+}
+
+/// Section 4.5.1: coordinates by matrices and a division, in double, and from these what hardware interpolates.
+void BumpStage::set_corners(const ProjectionPlane& plane) {
+    for (const glm::dvec2& corner : plane.corners) {
+        const glm::dvec3 ray(corner, 1.0), linear = m_linear * ray, bump = m_bump * ray;
+        m_corners.push_back({(corner - m_eye.first) / (m_eye.last - m_eye.first),
+                             {linear.x, linear.y, bump.x, bump.y, linear.z}});
+    }
+}
+
+void BumpStage::make_bumps(const Chart& source, const ProjectionPlane& plane) {
+    using Texel = MachineTexture<2>::Texel;
+    const double first = has_border(m_unit) ? 1 : 0, span = m_unit.size - 2 * first;
+    const auto place = [&](int i, double most) { return ((i + 0.5 - first) / span * 2 - 1) * most; };
+    std::vector<Texel> texels;
     for (int j = 0; j < m_unit.size; ++j)
         for (int i = 0; i < m_unit.size; ++i) {
-            const double x = box.x0 + (i + 0.5 - m_first) / m_span * box.width();
-            const double y = box.y0 + (j + 0.5 - m_first) / m_span * box.height();
-            Point<double> r = residual_at(map, linear, map.local_around(x, y, piece), x, y);
-            // Around the source the nearest way is taken.
-            if (map.period() > 0) r.x -= std::round(r.x / map.period()) * map.period();
-            // Where the map has no point there is nothing to be perturbed.
-            if (!std::isfinite(r.x) || !std::isfinite(r.y)) r = {0, 0};
-            all.push_back({r.x / source.width, r.y / source.height});
+            const glm::dvec2 r = plane_residual(source, plane, place(i, plane.x_max), place(j, plane.y_max));
+            texels.push_back({r.x, r.y});
         }
-    return all;
-}
-
-void BumpStage::make_bumps(const Panorama& map, int piece, const LinearPart& linear) {
-    const bool border = m_unit.edge == BumpUnit::Edge::border && m_unit.size > 2;
-    m_span = border ? m_unit.size - 2 : m_unit.size;
-    m_first = border ? 1 : 0;
-    std::vector<std::array<double, 2>> texels = residuals(map, piece, linear);
     for (std::size_t c = 0; c < 2; ++c) {
         double most = 0;
-        for (const auto& texel : texels) most = std::max(most, std::fabs(texel[c]));
+        for (const Texel& texel : texels) most = std::max(most, std::fabs(texel[c]));
         if (m_unit.scaled && m_unit.texel.kind == NumberFormat::Kind::fixed && most > 0)
             m_scale[c] = most / largest(m_unit.texel);
     }
-    for (auto& texel : texels) {
+    for (Texel& texel : texels) {
         bool beyond = false;
         for (std::size_t c = 0; c < 2; ++c) texel[c] = nearest(m_unit.texel, texel[c] / m_scale[c], beyond);
         m_saturated += beyond;
@@ -92,14 +139,43 @@ void BumpStage::make_bumps(const Panorama& map, int piece, const LinearPart& lin
     m_bumps = std::make_unique<MachineTexture<2>>(m_unit.size, m_unit.weight_bits, std::move(texels));
 }
 
+/// What a pixel divides: Corner::numbers there.
+template <class T>
+std::array<T, 5> BumpStage::numbers_at(double s, double t) const {
+    std::array<T, 5> numbers;
+    if (m_unit.projecting == BumpUnit::Projecting::pixel) {
+        const glm::dvec3 eye = eye_ray(m_eye, s, t);
+        const auto row = [&](const glm::dmat3& m, int i) {
+            return T(eye.x) * T(m[0][i]) + T(eye.y) * T(m[1][i]) + T(eye.z) * T(m[2][i]);
+        };
+        return {row(m_linear, 0), row(m_linear, 1), row(m_bump, 0), row(m_bump, 1), row(m_linear, 2)};
+    }
+    // The triangle of the fan: the first whose far side, a diagonal or the last edge, the point is not beyond.
+    const glm::dvec2 from = glm::dvec2(s, t) - m_corners[0].screen;
+    const auto across = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
+    for (std::size_t k = 1; k + 1 < m_corners.size(); ++k) {
+        const Corner &a = m_corners[0], &b = m_corners[k], &c = m_corners[k + 1];
+        const glm::dvec2 to_b = b.screen - a.screen, to_c = c.screen - a.screen;
+        const double area = across(to_b, to_c), of_b = across(from, to_c) / area,
+                     of_c = across(to_b, from) / area;
+        if (of_b < 0 && k + 2 < m_corners.size()) continue;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const T first(a.numbers[i]);
+            numbers[i] = first + (T(b.numbers[i]) - first) * T(of_b) + (T(c.numbers[i]) - first) * T(of_c);
+        }
+        break;
+    }
+    return numbers;
+}
+
 UnitCoordinates BumpStage::operator()(double s, double t) const {
     return with_format(m_unit.arithmetic, [&](auto number) {
         using T = decltype(number);
-        Point<T> at = m_linear.at(T(2 * s - 1), T(2 * t - 1));
+        const std::array<T, 5> n = numbers_at<T>(s, t);
+        Point<T> at{n[0] / n[4], n[1] / n[4]};
         if (m_bumps) {
-            const T across(s), down(t);
-            const auto bump =
-                m_bumps->template read<T>(across.value * m_span + m_first, down.value * m_span + m_first);
+            const T across = n[2] / n[4], down = n[3] / n[4];
+            const auto bump = m_bumps->template read<T>(across.value * m_unit.size, down.value * m_unit.size);
             at = {at.x + bump[0] * m_scale[0], at.y + bump[1] * m_scale[1]};
         }
         return UnitCoordinates{{at.x.value, at.y.value}, at.x.beyond || at.y.beyond};
@@ -118,9 +194,15 @@ BumpedPanorama::BumpedPanorama(const Panorama& map, const BumpUnit& unit)
     : MachineMap(std::make_shared<PanoramaPlan>(checked(map, unit), exactly()), map.target_pieces(),
                  map.source_size(), map.source().turn(), unit.address_bits),
       m_map(map),
-      m_pieces(map.target_pieces()) {
-    for (std::size_t piece = 0; piece < m_pieces.size(); ++piece)
-        m_stages.emplace_back(map, static_cast<int>(piece), unit);
+      m_eye(eye_corners(map.target())) {
+    const std::vector<ProjectionPlane> planes = projection_planes(map, unit.planes);
+    for (const ProjectionPlane& plane : planes)
+        m_stages.emplace_back(map.source(), map.target(), plane, unit);
+    // Half of the angle between two directions is where their right axes' sum points to the right.
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+        const glm::dmat3 a = glm::transpose(planes[i - 1].from_eye), b = glm::transpose(planes[i].from_eye);
+        m_between.push_back(a[0] + b[0]);
+    }
 }
 
 int BumpedPanorama::saturated_texels() const {
@@ -129,10 +211,15 @@ int BumpedPanorama::saturated_texels() const {
     return all;
 }
 
-UnitCoordinates BumpedPanorama::coordinates(int x, int y, int piece) const {
-    const auto i = static_cast<std::size_t>(piece);
-    const Box& box = m_pieces[i];
-    return m_stages[i]((x + 0.5 - box.x0) / box.width(), (y + 0.5 - box.y0) / box.height());
+UnitCoordinates BumpedPanorama::at(double s, double t) const {
+    const glm::dvec3 ray = eye_ray(m_eye, s, t);
+    const auto is_right = [&](const glm::dvec3& normal) { return glm::dot(normal, ray) >= 0; };
+    return m_stages[static_cast<std::size_t>(std::count_if(m_between.begin(), m_between.end(), is_right))](s,
+                                                                                                           t);
+}
+
+UnitCoordinates BumpedPanorama::coordinates(int x, int y, int) const {
+    return at((x + 0.5) / width(), (y + 0.5) / height());
 }
 
 double BumpedPanorama::rounding(const Box& box, int piece) const {

@@ -20,17 +20,17 @@ using text_file::Json;
 /// The members of an object. Errors name the parameter and the key.
 class MachineMembers {
   public:
-    /// Throws Error unless `text` is `preset`, an object without members, or an object.
-    MachineMembers(std::string_view text, const std::string& preset) {
+    /// Throws Error unless `text` is `preset`, with keys or without, or an object. `more`: what else might have been given.
+    MachineMembers(std::string_view text, const std::string& preset, const std::string& more = "") {
         if (text == preset) return;
         if (text.starts_with(preset + ":")) {
             read_list(text.substr(preset.size() + 1));
             return;
         }
         if (!text_file::trimmed(text).starts_with('{'))
-            throw Error(
-                "machine", printable(text),
-                "must be " + preset + ", " + preset + ":key=value,key=value or an object of JSON, {...}");
+            throw Error("machine", printable(text),
+                        "must be " + preset + ", " + preset +
+                            ":key=value,key=value or an object of JSON, {...}" + more);
         m_json = text_file::JsonFile(text, "machine");
     }
 
@@ -120,6 +120,16 @@ const std::vector<NumberFormat>& arithmetics() {
 BumpUnit bump_unit_from_text(std::string_view text) {
     BumpUnit unit;
     MachineMembers members(text, kBumpPreset);
+    std::map<std::string, BumpCard> cards;
+    for (const BumpCard card : kBumpCards) cards[name_of(card)] = card;
+    members.read("card", unit.card, cards);
+    unit.texel = texel_of(unit.card);
+    using Projecting = BumpUnit::Projecting;
+    members.read("projecting", unit.projecting,
+                 {{"vertex", Projecting::vertex}, {"pixel", Projecting::pixel}});
+    members.read(kPlanesRow, unit.planes.count);
+    members.read(kPlaneXRow, unit.planes.x_max);
+    members.read(kPlaneYRow, unit.planes.y_max);
     members.read(kBumpSizeRow, unit.size);
     members.read("texel", unit.texel, {kSigned8, kSigned16, kFloat16, kFloat32});
     members.read("scaled", unit.scaled);
@@ -129,18 +139,23 @@ BumpUnit bump_unit_from_text(std::string_view text) {
     members.read(kBumpAddressRow, unit.address_bits);
     members.read(kTextureSideRow, unit.texture_side);
     members.finish();
+    check_card(unit);
     return unit;
 }
 
 ShaderUnit shader_unit_from_text(std::string_view text) {
     ShaderUnit unit;
-    MachineMembers members(text, kShaderPreset);
+    const bool printed = text == kPrintedPreset || text.starts_with(std::string(kPrintedPreset) + ":");
+    if (printed) unit.layout = ShaderLayout::printed;
+    MachineMembers members(text, printed ? kPrintedPreset : kShaderPreset,
+                           ", or " + std::string(kPrintedPreset) + " likewise");
     members.read("arithmetic", unit.arithmetic, arithmetics());
     members.read("texel", unit.texel, {kSigned8, kSigned16, kFloat16, kFloat32});
     members.read(kTableSizeRow, unit.table_size);
     members.read(kTableWeightRow, unit.weight_bits);
     members.read(kShaderAddressRow, unit.address_bits);
     members.read(kShaderTextureRow, unit.texture_side);
+    if (printed) members.read(kShaderAlphaRow, unit.alpha);
     members.finish();
     return unit;
 }

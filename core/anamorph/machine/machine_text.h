@@ -14,15 +14,18 @@ namespace anamorph::machine {
 /// The name of the preset for the hardware of Kim 2003, chapter 4.
 inline constexpr const char* kBumpPreset = "embm-2003";
 
-/// Parses a machine of kBumpPreset, with any of the keys size, texel, scaled, weight_bits, edge, arithmetic, address_bits
-/// and texture_side. Throws Error naming `machine` and the key.
+/// Parses a machine of kBumpPreset, with any of the keys card, projecting, planes, x_max, y_max, size, texel, scaled, weight_bits,
+/// edge, arithmetic, address_bits and texture_side. Throws Error naming `machine` and the key, also where the card cannot do it.
 BumpUnit bump_unit_from_text(std::string_view text);
 
 /// The name of the preset for the hardware of Kim 2003, chapter 5.
 inline constexpr const char* kShaderPreset = "ps20";
 
-/// Parses a machine of kShaderPreset, with any of the keys arithmetic, texel, table_size, weight_bits, address_bits and
-/// texture_side. Throws Error naming `machine` and the key.
+/// The name of the preset that has registers and textures as the printed program does (ShaderLayout::printed).
+inline constexpr const char* kPrintedPreset = "kim-2003";
+
+/// Parses a machine of kShaderPreset or kPrintedPreset, with any of the keys arithmetic, texel, table_size, weight_bits,
+/// address_bits and texture_side, and of the latter alpha. Throws Error naming `machine` and the key.
 ShaderUnit shader_unit_from_text(std::string_view text);
 
 /// The name of the preset for the machine of Oka 1987, section 3.

@@ -20,6 +20,8 @@ class MachineTexture {
         : m_size(size), m_weight_unit(std::ldexp(1.0, weight_bits)), m_texels(std::move(texels)) {}
 
     int size() const { return m_size; }
+    /// All texels, row by row.
+    const std::vector<Texel>& texels() const { return m_texels; }
 
     /// Reads the texture at a position in texels, centres at + 0.5; beyond the centres of the outer texels as
     /// there, where it is NaN as at 0. Interpolated with numbers T, along rows first.

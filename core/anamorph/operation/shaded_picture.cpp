@@ -52,7 +52,7 @@ class ProgrammedPicture final : public SolvedPicture {
         : m_warp(shaded_warp(map, request)),
           m_border(border_of(request)),
           m_filter(request.options.filter),
-          m_is_map(machine::reads_picture_once(*request.program)) {}
+          m_is_map(machine::reads_picture_once(m_warp->program())) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         if (!m_is_map) return {{"anamorph:exact_fraction", 0.0}};
@@ -112,6 +112,10 @@ class ProgrammedPicture final : public SolvedPicture {
 
 }  // namespace
 
+bool runs_program(const WarpRequest& request) {
+    return request.program || (request.machine && request.machine->layout != machine::ShaderLayout::ours);
+}
+
 std::optional<machine::ShaderProgram> read_shader(const OperationInput& input) {
     const auto file = input.files.find("program");
     if (file == input.files.end()) return {};
@@ -120,18 +124,21 @@ std::optional<machine::ShaderProgram> read_shader(const OperationInput& input) {
         machine::assemble_shader(input.reader.text(name), name, machine::kWarpSlots);
     if (input.values.text("scheme") != "hardware")
         throw Error("program", printable(name), "must be given with scheme=hardware only");
-    if (input.sources[0].channels > 4)
-        throw Error("src has " + std::to_string(input.sources[0].channels) +
-                    " channels: must have at most 4 with program");
     if (input.values.text("output") != "color" && !machine::reads_picture_once(program))
         throw Error("output", input.values.text("output"),
                     "must be color with a program that does not read s0 exactly once");
     return program;
 }
 
+void check_program_channels(const WarpRequest& request, int channels) {
+    if (runs_program(request) && channels > 4)
+        throw Error("src has " + std::to_string(channels) + " channels: must have at most 4 with " +
+                    (request.program ? "program" : std::string("machine=") + machine::kPrintedPreset));
+}
+
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request) {
     const bool is_color = !request.options.folds && request.options.output == Output::color;
-    if (request.program && is_color) return std::make_unique<ProgrammedPicture>(map, request);
+    if (is_color && runs_program(request)) return std::make_unique<ProgrammedPicture>(map, request);
     return solved(warped_by_shader(map, request));
 }
 

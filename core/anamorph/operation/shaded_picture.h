@@ -12,6 +12,10 @@ namespace anamorph {
 
 /// The program that `program` names; none where it is not given. Throws Error naming the line.
 std::optional<machine::ShaderProgram> read_shader(const OperationInput& input);
+/// Are colors those that a program makes, of the user's or the printed one?
+bool runs_program(const WarpRequest& request);
+/// Throws Error where a program makes the colors and a source's pixel does not fit a register.
+void check_program_channels(const WarpRequest& request, int channels);
 
 /// The picture of a request with a machine. Throws Error.
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request);

@@ -52,7 +52,9 @@ ParameterTable make_warp_table() {
                 {"residual", WarpScheme::residual},
                 {"hardware", Word::kNone}}),
         text("machine",
-             "of scheme hardware: ps20, the pixel shader of Kim 2003, and what differs from it, "
+             "of scheme hardware: ps20, a pixel shader as in Kim 2003, or kim-2003, the one that is printed "
+             "there, and "
+             "what differs from it, "
              "ps20:table_size=32,arithmetic=fixed16 or {\"table_size\": 32, \"arithmetic\": \"fixed16\"}; by "
              "default ps20"),
         file("program",
@@ -243,7 +245,7 @@ class Warps final : public Pictures {
         for (Attribute& attribute : said_of_pixels(request.pixel_aspect))
             picture.says.push_back(std::move(attribute));
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
-            !request.program)
+            !runs_program(request))
             picture.moves = 0;
         if (picture.pixels == PixelKind::color && !request.program && !request.machine)
             picture.moved_channels = moved_channels(request.options.data);
@@ -364,6 +366,7 @@ const char* const kExampleMesh = R"({"columns": 2, "rows": 2, "units": "fraction
 std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
     WarpRequest request = read_warp_request(input.values, input.sources[0].size());
     request.program = read_shader(input);
+    check_program_channels(request, input.sources[0].channels);
     MeshWarpOptions& options = request.options;
     options.data = rows::data_of(input.values, input.sources[0].facts, options.filter);
     options.adds_alpha = rows::adds_alpha(input.values, input.sources[0].alpha >= 0,
