@@ -8,7 +8,8 @@
 // `planes-N` a level view of 120 degrees by so many planes.
 //
 // `shader-NxN` are warps by meshes of N x N cells, drawn by the pixel shader with tables of so many texels and registers of
-// a format; errors in pixels of 256 x 256 or less. `blocks-N` are drapes by the machine of 1987 (block_machine.cpp).
+// a format; errors in pixels of 256 x 256 or less. `morph` is one picture of a morph along 32 lines as chapter 5 draws it, over
+// meshes that are cut near lines or not; errors, in pixels of 512 x 512 or less, against the features' map. `blocks-N` are drapes by the machine of 1987 (block_machine.cpp).
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "anamorph/machine/bump_unit.h"
+#include "anamorph/machine/morph_unit.h"
 #include "anamorph/machine/shaded_warp.h"
 #include "bench.h"
 #include "block_machine.h"
@@ -234,7 +236,69 @@ void measure_shader(const Settings& settings, Report& report, int cells) {
         }
 }
 
+/// 32 lines of a tenth of the picture, which move by up to a thirtieth of it.
+Features lines_of(int side) {
+    Features features;
+    for (int i = 0; i < 32; ++i) {
+        const auto at = [&](double phase) { return side * (0.5 + 0.4 * std::sin(phase)); };
+        const Point<double> p{at(7.0 * i), at(3.0 * i + 1)},
+            along{0.1 * side * std::cos(5.0 * i), 0.1 * side * std::sin(5.0 * i)},
+            by{side / 30.0 * std::sin(11.0 * i), side / 30.0 * std::cos(13.0 * i)};
+        features.add_line({{p, p + along}, {p + by, p + along + by}});
+    }
+    return features;
+}
+
+void measure_morph(const Settings& settings, Report& report) {
+    const int side = std::min(settings.size, kMostScreen);
+    const Size size{side, side};
+    const auto map = std::make_shared<const FeatureMap>(lines_of(side), std::vector<Size>{size, size}, size,
+                                                        std::vector<double>{0.5, 0.5}, LineWeights{});
+    for (const auto& [cells, levels] :
+         {std::pair(12, 0), std::pair(12, 1), std::pair(12, 2), std::pair(24, 1)}) {
+        Row row;
+        row.op = "machine";
+        row.case_name = "morph";
+        row.scheme = std::to_string(cells) + "-cells-" + std::to_string(levels) + "-levels";
+        if (!settings.wants_case(row.case_name) || !settings.wants_scheme(row.scheme)) continue;
+        MorphUnit unit;
+        unit.cells = cells;
+        unit.levels = levels;
+        const MorphMeshes meshes = morph_meshes(*map, unit);
+        const MorphWarp warp(map, 1, meshes.meshes[1], unit, 1);
+        std::vector<double> x(Block::kMaxSide + 16), y(x.size());
+        std::vector<std::int32_t> piece(x.size());
+        std::vector<float> errors;
+        const auto read = [&](const Block& block) {
+            for (int j = 0; j < block.box.height(); ++j) {
+                warp.exact_rows(block, j, j + 1, {x.data(), y.data(), piece.data(), Block::kMaxSide + 16});
+                for (std::size_t i = 0; i < std::size_t(block.box.width()); ++i) {
+                    const Point<double> exact =
+                        (*map)(block.box.x0 + double(i) + 0.5, block.box.y0 + j + 0.5, 1);
+                    errors.push_back(static_cast<float>(std::hypot(x[i] - exact.x, y[i] - exact.y)));
+                }
+            }
+        };
+        const std::vector<Times> times =
+            time_interleaved({{[&] {
+                                   errors.clear();
+                                   for (std::int64_t region = 0; region < warp.regions(); ++region)
+                                       for (const Block& block : warp.blocks(region)) read(block);
+                               },
+                               1}},
+                             1);
+        row.size = side;
+        row.ns_per_px = times[0].median / (double(side) * side);
+        row.best_ns_per_px = times[0].best / (double(side) * side);
+        row.ratio_to_exact = kNone;
+        row.bound_px = warp.reached(serial_for).max_error;
+        row.error = accuracy_of(errors);
+        report.add(row);
+    }
+}
+
 void run(const Settings& settings, Report& report) {
+    measure_morph(settings, report);
     for (const int side : {512, 1024}) measure_blocks(settings, report, side);
     for (const int cells : {4, 12}) measure_shader(settings, report, cells);
     for (const MachineCase& which : cases())

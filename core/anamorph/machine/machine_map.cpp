@@ -145,6 +145,14 @@ void MachineMap::exact_rows(const Block& block, int begin, int end, const Double
         }
 }
 
+double most_bound(const BlockMap& map, const Box& box) {
+    double most = 0;
+    for (const std::int64_t region : map.regions_in(box))
+        for (const Block& block : map.blocks(region))
+            if (!intersection(block.box, box).empty()) most = std::max(most, block.bound);
+    return most;
+}
+
 void check_texture_side(const Size& source, int side) {
     if (std::max(source.width, source.height) > side)
         throw Error("machine: a source of " + std::to_string(source.width) + "x" +

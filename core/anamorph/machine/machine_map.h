@@ -65,6 +65,9 @@ class MachineMap : public BlockMap {
     mutable std::map<std::array<int, 3>, std::int64_t> m_saturated;  ///< in regions, by piece and corner
 };
 
+/// The largest bound of a map's blocks that meet a box.
+double most_bound(const BlockMap& map, const Box& box);
+
 /// Throws Error naming `machine` where a source is larger than textures of side x side.
 void check_texture_side(const Size& source, int side);
 

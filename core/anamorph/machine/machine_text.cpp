@@ -115,6 +115,15 @@ const std::vector<NumberFormat>& arithmetics() {
     return all;
 }
 
+void read_shader_keys(MachineMembers& members, ShaderUnit& unit) {
+    members.read("arithmetic", unit.arithmetic, arithmetics());
+    members.read("texel", unit.texel, {kSigned8, kSigned16, kFloat16, kFloat32});
+    members.read(kTableSizeRow, unit.table_size);
+    members.read(kTableWeightRow, unit.weight_bits);
+    members.read(kShaderAddressRow, unit.address_bits);
+    members.read(kShaderTextureRow, unit.texture_side);
+}
+
 }  // namespace
 
 BumpUnit bump_unit_from_text(std::string_view text) {
@@ -149,13 +158,20 @@ ShaderUnit shader_unit_from_text(std::string_view text) {
     if (printed) unit.layout = ShaderLayout::printed;
     MachineMembers members(text, printed ? kPrintedPreset : kShaderPreset,
                            ", or " + std::string(kPrintedPreset) + " likewise");
-    members.read("arithmetic", unit.arithmetic, arithmetics());
-    members.read("texel", unit.texel, {kSigned8, kSigned16, kFloat16, kFloat32});
-    members.read(kTableSizeRow, unit.table_size);
-    members.read(kTableWeightRow, unit.weight_bits);
-    members.read(kShaderAddressRow, unit.address_bits);
-    members.read(kShaderTextureRow, unit.texture_side);
+    read_shader_keys(members, unit);
     if (printed) members.read(kShaderAlphaRow, unit.alpha);
+    members.finish();
+    return unit;
+}
+
+MorphUnit morph_unit_from_text(std::string_view text) {
+    MorphUnit unit;
+    MachineMembers members(text, kPrintedPreset);
+    read_shader_keys(members, unit.shader);
+    members.read(kMorphCellsRow, unit.cells);
+    members.read(kMorphLevelsRow, unit.levels);
+    members.read("buffer", unit.buffer,
+                 {{"X8R8G8B8", kUnsigned8}, {"A16B16G16R16", kUnsigned16}, {"float32", kFloat32}});
     members.finish();
     return unit;
 }

@@ -7,6 +7,7 @@
 
 #include "anamorph/machine/block_machine.h"
 #include "anamorph/machine/bump_unit.h"
+#include "anamorph/machine/morph_unit.h"
 #include "anamorph/machine/shaded_warp.h"
 
 namespace anamorph::machine {
@@ -27,6 +28,10 @@ inline constexpr const char* kPrintedPreset = "kim-2003";
 /// Parses a machine of kShaderPreset or kPrintedPreset, with any of the keys arithmetic, texel, table_size, weight_bits,
 /// address_bits and texture_side, and of the latter alpha. Throws Error naming `machine` and the key.
 ShaderUnit shader_unit_from_text(std::string_view text);
+
+/// Parses a machine of kPrintedPreset for morphs, with any of its keys but alpha, and cells, levels and buffer. Throws Error naming
+/// `machine` and the key.
+MorphUnit morph_unit_from_text(std::string_view text);
 
 /// The name of the preset for the machine of Oka 1987, section 3.
 inline constexpr const char* kBlockPreset = "oka-1987";

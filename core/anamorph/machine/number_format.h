@@ -39,6 +39,8 @@ inline constexpr NumberFormat kFixed32{NumberFormat::Kind::fixed, 32, 16};
 inline constexpr NumberFormat kSigned8{NumberFormat::Kind::fixed, 8, 7};
 inline constexpr NumberFormat kSigned16{NumberFormat::Kind::fixed, 16, 15};
 inline constexpr NumberFormat kUnsigned16{NumberFormat::Kind::normalised, 16};
+/// The format of a channel of D3DFMT_X8R8G8B8, 0 to 1.
+inline constexpr NumberFormat kUnsigned8{NumberFormat::Kind::normalised, 8};
 
 /// float16, float24, float32, fixed16, fixed32, V8U8, V16U16 or G16R16; of these only those `allowed`, where any are given.
 /// Throws Error naming `parameter` and what is allowed.

@@ -216,6 +216,10 @@ ShadedWarp::Drawn<T> ShadedWarp::run(int x, int y, const Read& read) const {
 }
 
 UnitCoordinates ShadedWarp::coordinates(int x, int y, int) const {
+    return texture_coordinates(x, y);
+}
+
+UnitCoordinates ShadedWarp::texture_coordinates(int x, int y) const {
     return with_format(m_unit.arithmetic, [&](auto number) {
         using T = decltype(number);
         UnitCoordinates found{};
@@ -241,11 +245,7 @@ std::array<double, 4> ShadedWarp::color(int x, int y, const ReadPicture& read) c
 }
 
 double ShadedWarp::rounding(const Box& box, int) const {
-    double most = 0;
-    for (const std::int64_t region : m_plan->regions_in(box))
-        for (const Block& block : m_plan->blocks(region))
-            if (!intersection(block.box, box).empty()) most = std::max(most, block.bound);
-    return most;
+    return most_bound(*m_plan, box);
 }
 
 }  // namespace anamorph::machine

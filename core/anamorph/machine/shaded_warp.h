@@ -77,6 +77,9 @@ class ShadedWarp final : public MachineMap {
     /// it.
     std::array<double, 4> color(int x, int y, const ReadPicture& read) const;
 
+    /// The coordinates at which the program reads the picture, last, for the pixel whose left upper corner is (x, y).
+    UnitCoordinates texture_coordinates(int x, int y) const;
+
   protected:
     UnitCoordinates coordinates(int x, int y, int piece) const override;
     double rounding(const Box& box, int piece) const override;

@@ -39,35 +39,6 @@ bool only(const std::vector<double>& weights, std::size_t shape) {
     return true;
 }
 
-/// The weights of the pictures in what is drawn.
-std::vector<double> color_weights(const MorphOptions& options, int shapes) {
-    if (options.picture || is_stmap(options.output)) {
-        const int k = options.picture.value_or(0);
-        if (k < 0 || k >= shapes)
-            throw Error("picture", std::to_string(k),
-                        "must be an integer from 0 to " + std::to_string(shapes - 1));
-        std::vector<double> one(static_cast<std::size_t>(shapes), 0.0);
-        one[static_cast<std::size_t>(k)] = 1;
-        return one;
-    }
-    if (options.color_weights.empty() && !options.t_color)
-        return mixture(options.shape_weights, options.t, shapes, "shape_weights", "t");
-    return mixture(options.color_weights, options.t_color.value_or(options.t), shapes, "color_weights",
-                   "t_color");
-}
-
-void check_sizes(const std::vector<Size>& pictures, const Size& target) {
-    check_picture_size("size", target);
-    for (std::size_t k = 0; k < pictures.size(); ++k)
-        check_picture_size("picture " + std::to_string(k + 1), pictures[k]);
-}
-
-Border border_of(const Size& size, Wrap wrap) {
-    // The angle of the flat chart plays no part for a plain rectangle of pixels.
-    return Border(Chart(Projection::rectilinear, size.width, size.height, 90),
-                  wrap == Wrap::automatic ? Wrap::clamp : wrap);
-}
-
 /// The picture that comes through untouched, if one does.
 std::optional<int> untouched(const FeatureMap& map, const std::vector<double>& shape,
                              const std::vector<double>& color) {
@@ -103,7 +74,7 @@ std::vector<Picture::Map> maps_of(const std::shared_ptr<const FeatureMap>& map,
         std::vector<Picture::Layer> layers;
         for (const int k : near_far.shapes)
             layers.push_back(
-                {border_of(map->picture(k), options.wrap), k, color[static_cast<std::size_t>(k)]});
+                {morph_border(map->picture(k), options.wrap), k, color[static_cast<std::size_t>(k)]});
         maps.push_back({{planned, &planned->blocks}, std::move(layers)});
     }
     return maps;
@@ -123,9 +94,40 @@ void check_mixture(const std::string& name, const std::string& text, const std::
                         shortest(kMost) + ", one for each picture, with sum 1");
 }
 
+std::vector<double> shape_mixture(const MorphOptions& options, int shapes) {
+    return mixture(options.shape_weights, options.t, shapes, "shape_weights", "t");
+}
+
+std::vector<double> color_mixture(const MorphOptions& options, int shapes) {
+    if (options.picture || is_stmap(options.output)) {
+        const int k = options.picture.value_or(0);
+        if (k < 0 || k >= shapes)
+            throw Error("picture", std::to_string(k),
+                        "must be an integer from 0 to " + std::to_string(shapes - 1));
+        std::vector<double> one(static_cast<std::size_t>(shapes), 0.0);
+        one[static_cast<std::size_t>(k)] = 1;
+        return one;
+    }
+    if (options.color_weights.empty() && !options.t_color) return shape_mixture(options, shapes);
+    return mixture(options.color_weights, options.t_color.value_or(options.t), shapes, "color_weights",
+                   "t_color");
+}
+
+Border morph_border(const Size& size, Wrap wrap) {
+    // The angle of the flat chart plays no part for a plain rectangle of pixels.
+    return Border(Chart(Projection::rectilinear, size.width, size.height, 90),
+                  wrap == Wrap::automatic ? Wrap::clamp : wrap);
+}
+
+void check_morph_sizes(const std::vector<Size>& pictures, const Size& target) {
+    check_picture_size("size", target);
+    for (std::size_t k = 0; k < pictures.size(); ++k)
+        check_picture_size("picture " + std::to_string(k + 1), pictures[k]);
+}
+
 std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictures) {
     if (options.filter != Filter::nearest || options.lines) return {};
-    const std::vector<double> weights = color_weights(options, pictures);
+    const std::vector<double> weights = color_mixture(options, pictures);
     for (std::size_t k = 0; k < weights.size(); ++k)
         if (only(weights, k)) return k;
     return {};
@@ -134,13 +136,12 @@ std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictur
 Picture morphed_picture(const std::shared_ptr<const Features>& features, const std::vector<Size>& pictures,
                         const Size& target, const MorphOptions& options) {
     if (!features) throw Error("a morph needs features");
-    check_sizes(pictures, target);
-    const std::vector<double> shape =
-        mixture(options.shape_weights, options.t, features->shapes(), "shape_weights", "t");
+    check_morph_sizes(pictures, target);
+    const std::vector<double> shape = shape_mixture(options, features->shapes());
     const auto map =
         std::make_shared<const FeatureMap>(*features, pictures, target, shape,
                                            LineWeights{options.weight_a, options.weight_b, options.weight_p});
-    const std::vector<double> color = color_weights(options, features->shapes());
+    const std::vector<double> color = color_mixture(options, features->shapes());
     Picture picture;
     picture.maps = maps_of(map, color, options);
     picture.filter = options.filter;

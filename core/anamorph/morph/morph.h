@@ -49,6 +49,15 @@ struct MorphOptions {
 void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
                    int shapes);
 
+/// The weights of so many key shapes in the shape of a morph, and in what is drawn of it: those that are given, or of t, or of the one
+/// picture that is shown. Throws Error on weights and times that are out of range or not as many.
+std::vector<double> shape_mixture(const MorphOptions& options, int shapes);
+std::vector<double> color_mixture(const MorphOptions& options, int shapes);
+/// The border of one of a morph's pictures.
+Border morph_border(const Size& picture, Wrap wrap);
+/// Throws Error unless the sizes of a morph and of its pictures are in range.
+void check_morph_sizes(const std::vector<Size>& pictures, const Size& target);
+
 /// The picture, of so many, whose pixels a morph in colour shows as they are, moved and never blended; none
 /// for other morphs.
 std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictures);

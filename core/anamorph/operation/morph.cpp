@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "anamorph/machine/machine_text.h"
 #include "anamorph/morph/features_file.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/shaded_morph.h"
 #include "anamorph/operation/solved.h"
 
 namespace anamorph {
@@ -59,7 +61,12 @@ ParameterTable make_morph_table() {
         data_filter(),
         wrap("is clamp"),
         tol(),
-        scheme({{"auto", MorphScheme::automatic}, {"exact", MorphScheme::exact}}),
+        scheme({{"auto", MorphScheme::automatic}, {"exact", MorphScheme::exact}, {"hardware", Word::kNone}}),
+        text("machine",
+             "of scheme hardware: kim-2003, the meshes, the pixel shader and the frame buffer of Kim 2003, "
+             "and what "
+             "differs from it, kim-2003:cells=24,levels=0 or {\"cells\": 24, \"levels\": 0}; by default "
+             "kim-2003"),
         colorspace("color space to filter and blend in; by default that of the pictures"),
         output({{"lines", Word::kNone, "color with the features of all pictures drawn over it"}}),
         alpha("with wrap=black"),
@@ -70,6 +77,18 @@ ParameterTable make_morph_table() {
     };
     table.insert(table.end(), others.begin(), others.end());
     return table;
+}
+
+/// The unit of scheme hardware. What is said of a machine is checked with the other schemes too.
+std::optional<machine::MorphUnit> unit_of(const ParameterValues& values) {
+    const machine::MorphUnit unit = values.given("machine")
+                                        ? machine::morph_unit_from_text(values.text("machine"))
+                                        : machine::MorphUnit{};
+    if (values.text("scheme") != "hardware") return {};
+    rows::check_overscan(values);
+    if (values.text("output") == "lines")
+        throw Error("output", "lines", "must be another with scheme=hardware");
+    return unit;
 }
 
 /// What is drawn, and of which picture.
@@ -107,7 +126,8 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
 
     MorphOptions& options = request.options;
     options.overscan = rows::overscan_of(values, size);
-    options.scheme = chosen<MorphScheme>(values, "scheme");
+    request.machine = unit_of(values);
+    if (!request.machine) options.scheme = chosen<MorphScheme>(values, "scheme");
     options.tol = values.number("tol");
     options.filter = rows::filter_of(values);
     options.wrap = chosen<Wrap>(values, "wrap");
@@ -237,9 +257,9 @@ class Morphs final : public Pictures {
         picture.add_overscan(overscan);
         picture.pixels = pixels_of(options.output);
         picture.adds_alpha = options.adds_alpha;
-        picture.says = {{"anamorph:tol", options.tol}};
+        if (!request.machine) picture.says = {{"anamorph:tol", options.tol}};
         // A film's frames are blends but for a few.
-        if (picture.pixels == PixelKind::color && m_request.frames == 1)
+        if (picture.pixels == PixelKind::color && m_request.frames == 1 && !request.machine)
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));
         if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(options.data);
         for (Attribute& attribute : said_of_pixels(request.pixel_aspect))
@@ -247,7 +267,8 @@ class Morphs final : public Pictures {
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
         if (const std::string shapes = named_shapes(*m_features); !shapes.empty())
             picture.says.push_back({"anamorph:shapes", shapes});
-        picture.solve = [request, options, features = m_features] {
+        picture.solve = [request, options, features = m_features]() -> std::unique_ptr<const SolvedPicture> {
+            if (request.machine) return shaded_morph(features, request, options);
             return solved(
                 morphed_picture(features, request.pictures, {request.width, request.height}, options));
         };
@@ -271,6 +292,7 @@ std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
     if (Size{request.width, request.height} == sizes[0])
         request.pixel_aspect = input.sources[0].facts.pixel_aspect;
     request.options.data = rows::data_of(input.values, input.sources[0].facts, request.options.filter);
+    if (request.machine && request.options.output == Output::color) check_shaded_sources(input.sources);
     request.options.adds_alpha =
         rows::adds_alpha(input.values, input.sources[0].alpha >= 0, request.options.wrap == Wrap::black);
     return std::make_unique<Morphs>(request, read_features(request, input));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "anamorph/geometry/size.h"
+#include "anamorph/machine/morph_unit.h"
 #include "anamorph/morph/morph.h"
 #include "anamorph/operation/operation.h"
 
@@ -24,6 +25,8 @@ struct MorphRequest {
     std::optional<double> pin_border;  ///< otherwise as the features say
     int frames = 1;
     double pixel_aspect = 1;  ///< width of a pixel over its height, where the picture has those of the first
+    /// The unit that draws a morph of scheme hardware, in place of options.scheme and tol.
+    std::optional<machine::MorphUnit> machine = {};
 
     /// The options of a frame of a film: t runs evenly from 0 in the first frame to 1 in the last; t_color
     /// does too unless it was given.
