@@ -258,7 +258,8 @@ TEST(MorphUnit, TheFrameBufferHoldsEightBits) {
         const double t = n / 20.0, a = 0.31, b = 0.87;
         const auto flat = [&](int k, int, int, int) { return k == 0 ? a : b; };
         const Drawn drawn = drawn_by({{"t", shortest(t)}, {"machine", "kim-2003:arithmetic=float32"}}, flat);
-        const long of_a = std::lround(255 * a), of_b = std::lround(255 * b), alpha = std::lround(255 * double{static_cast<float>(t)});
+        const long of_a = std::lround(255 * a), of_b = std::lround(255 * b),
+                   alpha = std::lround(255 * double{static_cast<float>(t)});
         const long expected = n == 0    ? of_a
                               : n == 20 ? of_b
                                         : std::lround((of_b * alpha + of_a * (255 - alpha)) / 255.0);

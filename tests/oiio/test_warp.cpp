@@ -452,6 +452,8 @@ TEST_F(Warp, WhatFailsSaysWhyInALine) {
         {"city.exr.warp?scheme=hardware&program=bad.ps", "bad.ps: line 3: \"frob\": no such instruction"},
         {"city.exr.warp?scheme=hardware&program=good.ps&output=error", "output=error: must be color"},
         {"city.exr.warp?scheme=exact&mesh=grid.json&program=good.ps", "must be given with scheme=hardware"},
+        {"city.exr.warp?scheme=hardware&mesh=grid.json&machine=kim-2003:alpha=2",
+         "alpha=2: must be a number"},
         {"city.exr.warp?points=none.csv", "none.csv\" does not exist"},
         {"city.exr.warp?mesh=grid.json&points=points.csv", "must not be given together with mesh"},
         {"city.exr.warp?mesh=grid.json&step=2", "step=2: must be given with ST-maps only"},
