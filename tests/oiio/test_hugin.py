@@ -27,8 +27,8 @@ SCALE = 1024
 BY_ANGLE = {  # radius of an angle from the axis, and back
     "linear": (lambda t: t, lambda r: r),
     "stereographic": (lambda t: 2 * np.tan(t / 2), lambda r: 2 * np.arctan(r / 2)),
-    "equisolid": (lambda t: 2 * np.sin(t / 2), lambda r: 2 * np.arcsin(np.minimum(r / 2, 1))),
-    "orthographic": (lambda t: np.sin(t), lambda r: np.arcsin(np.minimum(r, 1))),
+    "equisolid": (lambda t: 2 * np.sin(t / 2), lambda r: 2 * np.arcsin(r / 2)),
+    "orthographic": (lambda t: np.sin(t), lambda r: np.arcsin(r)),
 }
 PANORAMA_BY_ANGLE = {3: "linear", 4: "stereographic", 9: "equisolid", 14: "orthographic", 15: "equisolid"}
 IMAGE_BY_ANGLE = {2: "linear", 3: "linear", 8: "orthographic", 10: "stereographic", 21: "equisolid"}
@@ -45,7 +45,8 @@ def panorama_rays(f, width, height, fov):
         to_radius, to_angle = BY_ANGLE[PANORAMA_BY_ANGLE[f]]
         s = 2 * to_radius(a / 2) / width
         r = np.hypot(x, y)
-        t = to_angle(r * s)
+        with np.errstate(invalid="ignore"):
+            t = to_angle(r * s)
         return np.stack([np.sin(t) * x / r, np.sin(t) * y / r, np.cos(t)], -1)
     if f == 21:  # Hammer and Aitoff: the width of half the longitude in Lambert's azimuthal projection, twice
         s = 2 * (2 * math.sqrt(2) * math.sin(a / 4) / math.sqrt(1 + math.cos(a / 4))) / width
@@ -64,6 +65,13 @@ def panorama_rays(f, width, height, fov):
         outside = (np.abs(longitude) > math.pi) | (np.abs(latitude) > math.pi / 2)
         longitude[outside] = np.nan
     return np.stack([np.sin(longitude) * np.cos(latitude), np.sin(latitude), np.cos(longitude) * np.cos(latitude)], -1)
+
+
+def fold(image):
+    """Where the radius of a lens no longer rises: beyond, the picture would be seen again, mirrored."""
+    a, b, c = image["a"], image["b"], image["c"]
+    roots = np.roots([4 * a, 3 * b, 2 * c, 1 - a - b - c])
+    return min([root.real for root in roots if abs(root.imag) < 1e-12 and root.real > 0], default=math.inf)
 
 
 def image_points(rays, image):
@@ -88,6 +96,7 @@ def image_points(rays, image):
             if image["f"] == 8:
                 u[z <= 0] = np.nan
         r = np.hypot(u, v) / (min(width, height) / 2)
+        u[r >= fold(image)] = np.nan
         k = image["a"] * r**3 + image["b"] * r**2 + image["c"] * r + 1 - image["a"] - image["b"] - image["c"]
         return u * k + image["d"] + width / 2, v * k + image["e"] + height / 2
 
@@ -121,16 +130,27 @@ def row(made):
     return text + f' n"{made["n"]}"\n'
 
 
-def write_project(name, panorama, images, more=""):
+def new_name(suffix):
+    """A name that was not read before: hosts keep pictures by their names."""
+    PictureTest.jobs += 1
+    return f"project{PictureTest.jobs}{suffix}"
+
+
+def write_project(panorama, images, more="", crop=""):
+    """The name of a new project."""
     f, width, height, fov = panorama
+    name = new_name(".pto")
     with open(name, "w") as project:
         project.write("# hugin project file\n#hugin_ptoversion 2\n"
-                      f'p f{f} w{width} h{height} v{fov} E0 R0 n"TIFF_m c:NONE"\nm i5\n\n')
+                      f'p f{f} w{width} h{height} v{fov} E0 R0 {crop} n"TIFF_m c:NONE"\nm i5\n\n')
         project.writelines(row(made) for made in images)
         project.write("\n" + more + "\n# control points\nv\n")
+    return name
 
 
-def write_coordinates(name, width, height, blue=0.5, alpha=None):
+def write_coordinates(width, height, blue=0.5, alpha=None):
+    """The name of a new coordinate picture."""
+    name = new_name(".tif")
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     channels = [0.25 + x / SCALE, 0.25 + y / SCALE, np.full_like(x, blue)] + ([] if alpha is None else [alpha])
     if alpha is not None:
@@ -138,6 +158,7 @@ def write_coordinates(name, width, height, blue=0.5, alpha=None):
     pixels = np.ascontiguousarray(np.stack(channels, -1).astype(np.float32))
     picture = oiio.ImageBuf(oiio.ImageSpec(width, height, len(channels), "float"))
     assert picture.set_pixels(oiio.ROI(), pixels) and picture.write(name), picture.geterror()
+    return name
 
 
 def points(pixels):
@@ -149,11 +170,10 @@ def distance(pixels, x, y):
     return np.hypot(px - x, py - y)
 
 
-def ours(project, arguments=""):
-    """Our picture, whole."""
-    separator = "&" if arguments else ""
-    pixels = read(f"{project}.pano?filter=bilinear&alpha=1&tol=1e-5{separator}{arguments}")
-    return pixels
+def ours(project, *arguments):
+    """Our picture, with alpha."""
+    keys = {"filter": "bilinear", "alpha": "1", "tol": "1e-5"} | dict(argument.split("=") for argument in arguments)
+    return read(f"{project}.pano?" + "&".join(f"{key}={value}" for key, value in keys.items()))
 
 
 def random_images(rng, name):
@@ -177,20 +197,18 @@ class Source(PictureTest):
     """Source points of one image by formulas, at a tolerance of 1e-5 pixels; floats of the picture hold 1/16000 of one."""
 
     def setUp(self):
-        write_coordinates("at.tif", 400, 300)
-        write_coordinates("upright.tif", 300, 400)
+        self.at = write_coordinates(400, 300)
 
-    def check(self, made, panorama, what, arguments="", crop=None):
-        write_project("one.pto", panorama, [made])
-        pixels = ours("one.pto", "image=0" + arguments)
+    def check(self, made, panorama, what):
+        pixels = ours(write_project(panorama, [made]), "image=0")
         x, y = image_points(panorama_rays(*panorama), made)
-        inside = shown(made, x, y, 1)
+        inside = shown(made, x, y, 1.5)
         found = distance(pixels, x, y)[inside]
         if found.size:
             self.assertLess(found.max(), 4e-4, what)
             self.assertGreater(pixels[..., 3][inside].min(), 0.9999, what)
         # What lies beyond is not drawn.
-        beyond = ~shown(made, x, y, -1)
+        beyond = ~shown(made, x, y, -1.5)
         if beyond.any():
             self.assertEqual(pixels[beyond].max(), 0, what)
         return found.size
@@ -199,45 +217,43 @@ class Source(PictureTest):
         rng = random.Random(SEED)
         print("seed", SEED)
         compared = sum(self.check(made, panorama, f"seed {SEED}: {row(made)} in {panorama}")
-                       for panorama in PANORAMAS for made in random_images(rng, "at.tif"))
+                       for panorama in PANORAMAS for made in random_images(rng, self.at))
         self.assertGreater(compared, 500000)
 
     def test_upright_image(self):
         lens = (0.01, -0.03, 0.02, 5, -7)
-        self.assertGreater(self.check(image("upright.tif", 0, 300, 400, 60, 20, 10, 5, lens), PANORAMAS[2], "upright"), 2000)
+        self.assertGreater(self.check(image(write_coordinates(300, 400), 0, 300, 400, 60, 20, 10, 5, lens), PANORAMAS[2], "upright"), 2000)
 
     def test_crops(self):
         for f in (0, 2, 3, 8, 21):
             for crop in ((60, 341, 10, 290), (-30, 271, 20, 321)):
-                made = image("at.tif", f, 400, 300, 100, 30, 20, 10, crop=crop)
+                made = image(self.at, f, 400, 300, 100, 30, 20, 10, crop=crop)
                 self.assertGreater(self.check(made, PANORAMAS[2], f"f{f} S{crop}"), 1000)
 
     def test_links_and_view(self):
         """Image 1 has the lens of image 0; the recipe's view is drawn as of any source."""
-        first = image("at.tif", 3, 400, 300, 140, 40, 0, 0, (0.01, -0.02, 0, 3, -4))
-        second = dict(first, n="at.tif", y=-20, links={key: "=0" for key in "fvabcde"})
-        write_project("two.pto", PANORAMAS[2], [first, second])
-        pixels = ours("two.pto", "image=1&to=rectilinear&fov=70&size=300x200&yaw=-20")
+        first = image(self.at, 3, 400, 300, 140, 40, 0, 0, (0.01, -0.02, 0, 3, -4))
+        second = dict(first, y=-20, links={key: "=0" for key in "fvabcde"})
+        project = write_project(PANORAMAS[2], [first, second])
+        pixels = ours(project, "image=1", "to=rectilinear", "fov=70", "size=300x200", "yaw=-20")
         x, y = image_points(panorama_rays(0, 300, 200, 70) @ rotation(-20, 0, 0).T, second)
         inside = shown(second, x, y, 1)
         self.assertGreater(inside.sum(), 50000)
         self.assertLess(distance(pixels, x, y)[inside].max(), 4e-4)
         # It is the picture that the same keys make of the image alone.
-        alone = read("at.tif.pano?filter=bilinear&alpha=1&tol=1e-5&from=fisheye&srcfov=140&srcyaw=-20&to=rectilinear&fov=70"
+        alone = read(self.at + ".pano?filter=bilinear&alpha=1&tol=1e-5&from=fisheye&srcfov=140&srcyaw=-20&to=rectilinear&fov=70"
                      "&size=300x200&yaw=-20&srclens=ptlens:a=0.01,b=-0.02,d=3,e=-4")
         self.assertEqual(np.abs(pixels - alone).max(), 0)
 
     def test_crop_of_the_panorama_is_a_data_window(self):
-        made = image("at.tif", 0, 400, 300, 80, 10, 5)
-        write_project("whole.pto", PANORAMAS[2], [made])
-        with open("whole.pto") as whole, open("cut.pto", "w") as cut:
-            cut.write(whole.read().replace(" E0 ", " E0 S200,330,60,190 "))
-        spec = oiio.ImageBuf("cut.pto.pano").spec()
+        made = image(self.at, 0, 400, 300, 80, 10, 5)
+        whole, cut = write_project(PANORAMAS[2], [made]), write_project(PANORAMAS[2], [made], crop="S200,330,60,190")
+        spec = oiio.ImageBuf(cut + ".pano").spec()
         self.assertEqual((spec.x, spec.y, spec.width, spec.height), (200, 60, 130, 130))
         self.assertEqual((spec.full_x, spec.full_y, spec.full_width, spec.full_height), (0, 0, 512, 256))
-        self.assertEqual(np.abs(read("cut.pto.pano") - read("whole.pto.pano")[60:190, 200:330]).max(), 0)
+        self.assertEqual(np.abs(read(cut + ".pano") - read(whole + ".pano")[60:190, 200:330]).max(), 0)
         # A project is drawn as it stands.
-        self.assertEqual(np.abs(read("cut.pto") - read("cut.pto.pano")).max(), 0)
+        self.assertEqual(np.abs(read(cut) - read(cut + ".pano")).max(), 0)
 
 
 class Layers(PictureTest):
@@ -245,13 +261,12 @@ class Layers(PictureTest):
 
     PANORAMA = (2, 512, 256, 360)
 
-    def project(self, name, crops=(None, None, None)):
+    def project(self, crops=(None, None, None), alphas=(None, None, None), more=""):
         images = []
         for i, (f, fov, y, p, r) in enumerate(((0, 80, -20, 5, 3), (3, 130, 15, -10, -20), (0, 70, 40, 0, 0))):
-            write_coordinates(f"layer{i}.tif", 400, 300, 0.3 + 0.2 * i)
-            images.append(image(f"layer{i}.tif", f, 400, 300, fov, y, p, r, crop=crops[i]))
-        write_project(name, self.PANORAMA, images)
-        return images
+            name = write_coordinates(400, 300, 0.3 + 0.2 * i, alphas[i])
+            images.append(image(name, f, 400, 300, fov, y, p, r, crop=crops[i]))
+        return write_project(self.PANORAMA, images, more), images
 
     def places(self, images):
         rays = panorama_rays(*self.PANORAMA)
@@ -259,8 +274,8 @@ class Layers(PictureTest):
 
     def test_later_images_cover_those_before(self):
         for crops in ((None, None, None), ((10, 390, 20, 280), (50, 350, 0, 300), (-5, 222, 100, 290))):
-            images = self.project("order.pto", crops)
-            pixels = ours("order.pto")
+            project, images = self.project(crops)
+            pixels = ours(project)
             places = self.places(images)
             inside = [shown(made, x, y, 1) for made, (x, y) in zip(images, places)]
             out = [~shown(made, x, y, -1) for made, (x, y) in zip(images, places)]
@@ -281,7 +296,7 @@ class Layers(PictureTest):
         return np.minimum.reduce([x - left, right - x, y - top, bottom - y]), min(right - left, bottom - top) / 2
 
     def test_blend_and_feather(self):
-        images = self.project("blend.pto", (None, (20, 380, 10, 290), None))
+        project, images = self.project((None, (20, 380, 10, 290), None))
         places = self.places(images)
         clear = np.all([shown(made, x, y, 1) | ~shown(made, x, y, -1) for made, (x, y) in zip(images, places)], axis=0)
         for layers, feather in (("blend", None), ("blend", 30), ("blend", 0), ("order", 40)):
@@ -300,19 +315,17 @@ class Layers(PictureTest):
                 sums = sums + np.where(weight[..., None] > 0, values * weight[..., None], 0)
             where = clear & (total > 0)
             self.assertGreater(where.sum(), 20000)
-            pixels = ours("blend.pto", f"layers={layers}" + ("" if feather is None else f"&feather={feather}"))
+            pixels = ours(project, f"layers={layers}", *([] if feather is None else [f"feather={feather}"]))
             expected = sums[where] / total[where][..., None]
             self.assertLess(np.abs(pixels[where][..., :3] - expected).max(), 3e-6, f"{layers} {feather}")
             self.assertGreater(pixels[..., 3][where].min(), 0.9999)
 
     def test_alpha_and_masks_show_what_is_below(self):
-        images = self.project("masked.pto")
         hole = np.ones((300, 400))
         hole[100:200, 150:250] = 0
-        for i in range(3):
-            write_coordinates(f"layer{i}.tif", 400, 300, 0.3 + 0.2 * i, hole if i == 2 else np.ones((300, 400)))
-        write_project("masked.pto", self.PANORAMA, images, 'k i1 t0 p"30 40 200 40 200 260 30 260"\n')
-        pixels = read("masked.pto.pano?filter=bilinear&tol=1e-5")
+        project, images = self.project(alphas=(np.ones_like(hole), np.ones_like(hole), hole),
+                                       more='k i1 t0 p"30 40 200 40 200 260 30 260"\n')
+        pixels = read(project + ".pano?filter=bilinear&tol=1e-5")
         places = self.places(images)
 
         def states(made, i, x, y):
@@ -335,17 +348,17 @@ class Layers(PictureTest):
             self.assertLess(distance(pixels, x, y)[here].max(), 4e-4)
         self.assertEqual(pixels[np.all([out for _, out in known], axis=0)].max(), 0)
         # output=coverage is the alpha.
-        self.assertLess(np.abs(read("masked.pto.pano?filter=bilinear&tol=1e-5&output=coverage")[..., 0] - pixels[..., 3]).max(), 1e-6)
+        self.assertLess(np.abs(read(project + ".pano?filter=bilinear&tol=1e-5&output=coverage")[..., 0] - pixels[..., 3]).max(), 1e-6)
 
     def test_bounds_are_the_largest(self):
-        self.project("bounds.pto")
+        project, _ = self.project()
         largest = 0.0
         for i in range(3):
-            largest = max(largest, oiio.ImageBuf(f"bounds.pto.pano?image={i}").spec().get_float_attribute("anamorph:max_error"))
-        spec = oiio.ImageBuf("bounds.pto.pano").spec()
+            largest = max(largest, oiio.ImageBuf(f"{project}.pano?image={i}").spec().get_float_attribute("anamorph:max_error"))
+        spec = oiio.ImageBuf(project + ".pano").spec()
         self.assertAlmostEqual(spec.get_float_attribute("anamorph:max_error"), largest, delta=1e-9)
         self.assertLessEqual(largest, 0.01)
-        errors, bounds = read("bounds.pto.pano?output=error"), read("bounds.pto.pano?output=bound")
+        errors, bounds = read(project + ".pano?output=error"), read(project + ".pano?output=bound")
         self.assertTrue((errors <= bounds).all())
 
 
@@ -355,16 +368,22 @@ class Nona(PictureTest):
 
     LARGEST = 0.003
 
-    def nona(self, panorama, made):
-        name = self.new_name("")
-        write_project(name + ".pto", panorama, [made])
-        run("nona", "-o", name + "_", name + ".pto")
-        picture = oiio.ImageBuf(name + "_0000.tif")
-        self.assertFalse(picture.has_error, picture.geterror())
-        spec = picture.spec()
+    def setUp(self):
+        self.at = write_coordinates(400, 300)
+
+    def nona(self, panorama, made, more=""):
+        """What nona draws, whole, and the project."""
+        project = write_project(panorama, [made], more)
+        name = project[:-4]
+        run("nona", "-o", name + "_", project)
         whole = np.zeros((panorama[2], panorama[1], 4))
-        whole[spec.y:spec.y + spec.height, spec.x:spec.x + spec.width] = read(name + "_0000.tif")
-        return whole, name + ".pto"
+        if not os.path.exists(name + "_0000.tif"):
+            return whole, project  # nothing is seen
+        # What libtiff has to say against nona's files, OpenImageIO 2.4 would say of the next file that this process reads.
+        run("oiiotool", name + "_0000.tif", "-o", name + ".exr")
+        spec = oiio.ImageBuf(name + ".exr").spec()
+        whole[spec.y:spec.y + spec.height, spec.x:spec.x + spec.width] = read(name + ".exr")
+        return whole, project
 
     def check(self, made, panorama):
         """The number of pixels compared, and the largest distance."""
@@ -373,7 +392,10 @@ class Nona(PictureTest):
         x, y = image_points(panorama_rays(*panorama), made)
         # Two pixels inside: what lies at the edge is each program's own affair.
         inside = shown(made, x, y, 2)
-        self.assertTrue((theirs[..., 3][inside] > 0.99).all(), f"nona left a part out: {row(made)}")
+        # Some pixels nona leaves out where its picture comes back to itself.
+        seen = theirs[..., 3] > 0.99
+        self.assertLessEqual((inside & ~seen).sum(), 0.01 * inside.sum(), f"nona left a part out: {row(made)}")
+        inside &= seen
         found = distance(theirs, *points(mine))[inside]
         beyond = ~shown(made, x, y, -2)
         self.assertEqual(theirs[..., 3][beyond].max() if beyond.any() else 0, 0, row(made))
@@ -381,11 +403,11 @@ class Nona(PictureTest):
 
     def test_every_projection(self):
         rng = random.Random(SEED + 1)
-        write_coordinates("at.tif", 400, 300)
         largest, pixels = 0.0, 0
-        for panorama in PANORAMAS:
+        for i, panorama in enumerate(PANORAMAS):
             of_panorama = 0.0
-            for made in random_images(rng, "at.tif"):
+            # Each projection of images in every third panorama.
+            for made in list(random_images(rng, self.at))[i % 3::3]:
                 with self.subTest(seed=SEED, panorama=panorama, image=row(made)):
                     count, found = self.check(made, panorama)
                     pixels, of_panorama = pixels + count, max(of_panorama, found)
@@ -396,25 +418,18 @@ class Nona(PictureTest):
         self.assertGreater(pixels, 500000)
 
     def test_crops(self):
-        write_coordinates("at.tif", 400, 300)
         for f in (0, 1, 2, 3, 8, 10, 21):
-            made = image("at.tif", f, 400, 300, 110, 30, 20, 10, crop=(60, 341, 10, 270))
+            made = image(self.at, f, 400, 300, 110, 30, 20, 10, crop=(60, 341, 10, 270))
             with self.subTest(f=f):
                 count, found = self.check(made, PANORAMAS[2])
                 self.assertGreater(count, 1000)
                 self.assertLess(found, self.LARGEST)
 
     def test_masks(self):
-        write_coordinates("at.tif", 400, 300)
-        made = image("at.tif", 0, 400, 300, 80, 20, 10)
+        made = image(self.at, 0, 400, 300, 80, 20, 10)
         more = 'k i0 t0 p"100 90 310 100 205 240 120.5 150"\n'
-        write_project("hole.pto", PANORAMAS[2], [made], more)
-        run("nona", "-o", "hole_", "hole.pto")
-        picture = oiio.ImageBuf("hole_0000.tif")
-        spec = picture.spec()
-        theirs = np.zeros((256, 512), bool)
-        theirs[spec.y:spec.y + spec.height, spec.x:spec.x + spec.width] = read("hole_0000.tif")[..., 3] > 0.5
-        mine = ours("hole.pto", "filter=nearest")[..., 3] > 0.5
+        theirs, project = self.nona(PANORAMAS[2], made, more)
+        theirs, mine = theirs[..., 3] > 0.5, ours(project, "filter=nearest")[..., 3] > 0.5
         self.assertGreater((~theirs & shown(made, *image_points(panorama_rays(*PANORAMAS[2]), made), 2)).sum(), 1000)
         # A pixel of the panorama is 1.5 of the image's: they differ along outlines alone.
         self.assertLess((theirs != mine).sum(), 120)

@@ -23,16 +23,15 @@ struct Row {
     std::map<std::string, std::string_view, std::less<>> values;
 };
 
-/// Names of more than a letter, before which a letter alone would be read.
-constexpr std::string_view kLongNames[] = {"TrX", "TrY", "TrZ", "Tpy", "Tpp", "TiX", "TiY",
-                                           "TiZ", "TiS", "Te0", "Te1", "Te2", "Te3", "Eev"};
+/// All other names are one letter.
+constexpr std::string_view kLongNames[] = {
+    "TrX", "TrY", "TrZ", "Tpy", "Tpp", "TiX", "TiY", "TiZ", "TiS", "Te0", "Te1", "Te2", "Te3", "Eev", "Er",
+    "Eb",  "Ra",  "Rb",  "Rc",  "Rd",  "Re",  "Va",  "Vb",  "Vc",  "Vd",  "Vx",  "Vy",  "Vm",  "Vf"};
 
 std::string_view name_at(std::string_view text) {
     for (const std::string_view name : kLongNames)
         if (text.starts_with(name)) return name;
-    std::size_t count = 0;
-    while (count < text.size() && text_file::starts_name(text[count]) && text[count] != '_') ++count;
-    return text.substr(0, count);
+    return text.substr(0, text_file::starts_name(text.front()) && text.front() != '_' ? 1 : 0);
 }
 
 /// The values of a row, behind its letter.
