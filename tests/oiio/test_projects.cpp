@@ -17,7 +17,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kPanorama = "p f2 w128 h64 v360 E0 R0 n\"TIFF_m\"\n";
+const std::string kPanorama = "p f2 w128 h64 v360 E1 R0 n\"TIFF_m\"\n";
 const std::string kLeft = "i w64 h48 f0 v80 a0 b-0.01 c0 d1 e-2 y-20 p5 r3 Eev1 n\"left.exr\"\n";
 const std::string kRight = "i w64 h48 f3 v=0 y25 p0 r0 S3,60,2,46 Eev1 n\"right.exr\"\n";
 
@@ -83,7 +83,7 @@ TEST_F(Projects, FunctionsTakeThemWithoutImages) {
     EXPECT_EQ(pixels, read_floats("two.pto?layers=blend"));
     const ImageBuf left("left.exr");
     EXPECT_THAT(drawn(options({{"src", "two.pto"}}), {&left}).geterror(),
-                HasSubstr("src \"two.pto\": must be given without source images"));
+                HasSubstr("src=two.pto: must be given without source images"));
     EXPECT_THAT(drawn(options({{"src", "left.exr"}})).geterror(), HasSubstr("must be given in recipes only"));
     EXPECT_THAT(drawn({}).geterror(), HasSubstr("0 source images: must be 1"));
     EXPECT_THAT(drawn(options({{"src", "none.pto"}})).geterror(), HasSubstr("none.pto\" does not exist"));
@@ -117,43 +117,43 @@ TEST_F(Projects, AreFilmsAndParts) {
 
 TEST_F(Projects, SayWhatIsRefused) {
     const std::pair<const char*, const char*> rows[] = {
-        {"from=fisheye", "from \"fisheye\": must not be given with a project of Hugin as src"},
-        {"srcfov=90", "srcfov \"90\": must not be given with a project of Hugin as src"},
-        {"srcyaw=9", "srcyaw \"9\": must not be given with a project"},
-        {"srclens=none", "srclens \"none\": must not be given with a project"},
-        {"srccrop=none", "srccrop \"none\": must not be given with a project"},
-        {"pixels=centers", "pixels \"centers\": must not be given with a project"},
-        {"stereo=top-bottom", "stereo \"top-bottom\": must not be given with a project"},
-        {"eye=left", "eye \"left\": must not be given with a project"},
-        {"scheme=hardware", "scheme \"hardware\": must not be given with a project"},
-        {"to=formula", "to \"formula\": must not be given with a project"},
-        {"face=left", "face \"left\": must be given together with to"},
-        {"image=2", "image \"2\": must be the number of an image of the project, 0 to 1"},
-        {"image=-1", "image \"-1\": must be an integer from 0 to 1023"},
-        {"image=0&layers=blend", "layers \"blend\": must not be given with image"},
-        {"image=0&feather=3", "feather \"3\": must not be given with image"},
-        {"feather=-1", "feather \"-1\": must be a number from 0 to 1e+06"},
-        {"feather=nan", "feather \"nan\": must be a number from 0 to 1e+06"},
-        {"layers=above", "layers \"above\": must be one of order, blend"},
-        {"output=stmap", "output \"stmap\": must be of one image: with image=N"},
-        {"wrap=clamp", "wrap \"clamp\": must be automatic or black"},
-        {"shutter=1", "shutter \"1\": must be of an image that is not cropped"},
-        {"data_filter=nearest", "data_filter \"nearest\": must not be given where images"},
-        {"fov=2147483648", "fov \"2147483648\": must be"},
-        {"size=2147483648", "size \"2147483648\": must be"},
+        {"from=fisheye", "from=fisheye: must not be given with a project of Hugin as src"},
+        {"srcfov=90", "srcfov=90: must not be given with a project of Hugin as src"},
+        {"srcyaw=9", "srcyaw=9: must not be given with a project"},
+        {"srclens=none", "srclens=none: must not be given with a project"},
+        {"srccrop=none", "srccrop=none: must not be given with a project"},
+        {"pixels=centers", "pixels=centers: must not be given with a project"},
+        {"stereo=top-bottom", "stereo=top-bottom: must not be given with a project"},
+        {"eye=left", "eye=left: must not be given with a project"},
+        {"scheme=hardware", "scheme=hardware: must not be given with a project"},
+        {"to=formula", "to=formula: must not be given with a project"},
+        {"face=left", "face=left: must be given together with to"},
+        {"image=2", "image=2: must be the number of an image of the project, 0 to 1"},
+        {"image=-1", "image=-1: must be an integer from 0 to 1023"},
+        {"image=0&layers=blend", "layers=blend: must not be given with image"},
+        {"image=0&feather=3", "feather=3: must not be given with image"},
+        {"feather=-1", "feather=-1: must be a number from 0 to 1e+06"},
+        {"feather=nan", "feather=nan: must be a number from 0 to 1e+06"},
+        {"layers=above", "layers=above: must be one of order, blend"},
+        {"output=stmap", "output=stmap: must be of one image: with image=N"},
+        {"wrap=clamp", "wrap=clamp: must be automatic or black"},
+        {"shutter=1", "shutter=1: must be of an image that is not cropped"},
+        {"data_filter=nearest", "data_filter=nearest: must not be given where images"},
+        {"fov=2147483648", "fov=2147483648: must be"},
+        {"size=2147483648", "size=2147483648: must be"},
     };
     for (const auto& [arguments, part] : rows)
         EXPECT_THAT(open_error(std::string("two.pto.pano?") + arguments),
                     AllOf(HasSubstr(part), Not(HasSubstr("\n"))))
             << arguments;
     EXPECT_THAT(open_error("left.exr.pano?from=rectilinear&image=0"),
-                HasSubstr("image \"0\": must be given together with a project of Hugin as src, x.pto"));
+                HasSubstr("image=0: must be given together with a project of Hugin as src, x.pto"));
     EXPECT_THAT(open_error("left.exr.pano?from=rectilinear&layers=order"),
                 HasSubstr("must be given together with a project"));
     EXPECT_THAT(open_error("left.exr.pano?from=rectilinear&feather=3"),
                 HasSubstr("must be given together with a project"));
     EXPECT_THAT(open_error("two.pto?src=left.exr"),
-                HasSubstr("src \"left.exr\": must not be given with the name of a file"));
+                HasSubstr("src=left.exr: must not be given with the name of a file"));
 }
 
 TEST_F(Projects, SayWhatIsWrongWithThem) {
@@ -169,10 +169,10 @@ TEST_F(Projects, SayWhatIsWrongWithThem) {
     EXPECT_THAT(error_of(kPanorama + "i w64 h47 f0 v80 n\"left.exr\""),
                 HasSubstr("image 0 (left.exr) is 64x48 and its project says 64x47: must be the same"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v180 n\"left.exr\""),
-                HasSubstr("bad.pto: image 0 (left.exr): fov \"180\""));
+                HasSubstr("bad.pto: image 0 (left.exr): fov=180"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f4 v180 a0.1 n\"left.exr\""),
                 AllOf(HasSubstr("bad.pto: image 0 (left.exr): "), HasSubstr("has no lens")));
-    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 b-9 n\"left.exr\""),
+    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 b9 n\"left.exr\""),
                 HasSubstr("bad.pto: image 0 (left.exr): lens"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 S64,70,0,48 n\"left.exr\""),
                 HasSubstr("image 0 (left.exr): S: must have pixels of the image, 64x48"));
@@ -181,7 +181,7 @@ TEST_F(Projects, SayWhatIsWrongWithThem) {
     EXPECT_THAT(error_of(kLeft), HasSubstr("to is not given and \"bad.pto\" has no row p"));
     EXPECT_THAT(error_of("p f12 w90 h80 v90\n" + kLeft),
                 HasSubstr("to is not given: bad.pto: row 1: f12: must be one of"));
-    EXPECT_THAT(error_of("p f0 w90 h80 v180\n" + kLeft), HasSubstr("fov \"180\": must be"));
+    EXPECT_THAT(error_of("p f0 w90 h80 v180\n" + kLeft), HasSubstr("fov=180: must be"));
     // What an image has that is not drawn is no matter to others; nor is the panorama to other views.
     write_text("bad.pto", "p f12 w90 h80 v90\n" + kLeft + "i w64 h48 f7 v80 n\"none.exr\"\n");
     EXPECT_EQ(read_floats("bad.pto?image=0&to=rectilinear&size=20").size(), 20u * 20 * 3);
