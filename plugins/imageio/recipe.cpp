@@ -81,10 +81,7 @@ void find_faces(Recipe& recipe, const std::string& key) {
     const auto exists = [](const std::string& name) { return side_file_reader().exists(name); };
     if (!has_face(source.name) || operation_of(source.name) || exists(source.name)) return;
     auto faces = std::make_shared<FaceFiles>(find_face_files(key, source.name, recipe.values, exists));
-    for (std::size_t i = 0; i < faces->names.size(); ++i) {
-        check_file_name(key, faces->names[i]);
-        faces->identities[i] = state_of(faces->names[i]);
-    }
+    std::transform(faces->names.begin(), faces->names.end(), faces->identities.begin(), state_of);
     source.faces = std::move(faces);
 }
 

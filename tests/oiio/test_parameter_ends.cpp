@@ -109,10 +109,15 @@ class ParameterEnds : public InFolder {
             if (key == of + "sensor") arguments.push_back({of + "focal", "24"});
         }
         if (key == "face") {
-            add("to", "cubemap");
+            const bool is_opengl = value.starts_with('p') || value.starts_with('n');
+            add("to", is_opengl ? "cubemap3x2" : "cubemap");
             arguments.push_back({"size", "4x4"});
         }
         if (operation.name == "pano" && value == "hardware") add("to", "rectilinear");
+        if (key == "seam" || key.starts_with("front_") || key.starts_with("back_")) {
+            sources[0] = "dual_fisheye.exr";
+            add("from", "dual_fisheye");
+        }
         if (key == "eye") add("stereo", "side-by-side");
         if (key == "samples") add("shutter", "1");
         if (key == "alpha" && operation.name == "morph") add("wrap", "black");

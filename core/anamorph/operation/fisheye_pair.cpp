@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<const char*, 7> kKeys = {"front_yaw",  "front_pitch", "front_roll", "back_yaw",
-                                              "back_pitch", "back_roll",   "feather"};
+                                              "back_pitch", "back_roll",   "seam"};
 
 bool any_given(const ParameterValues& values) {
     return std::any_of(kKeys.begin(), kKeys.end(), [&](const char* key) { return values.given(key); });
@@ -28,10 +28,10 @@ double margin(const Ray<double>& ray, double half_fov) {
 }
 
 /// The weight of a lens by its own margin and the other's.
-double weight_of(double own, double other, double feather) {
+double weight_of(double own, double other, double seam) {
     if (!(own >= 0)) return 0;
     if (!(other >= 0)) return 1;
-    const double band = std::min(feather, own + other);
+    const double band = std::min(seam, own + other);
     if (!(band > 0)) return own > other ? 1 : own < other ? 0 : 0.5;
     return std::clamp(0.5 + (own - other) / (2 * band), 0.0, 1.0);
 }
@@ -39,12 +39,12 @@ double weight_of(double own, double other, double feather) {
 /// The weights of one of two lenses in a picture.
 class LensWeights {
   public:
-    LensWeights(const Panorama& own, const Panorama& other, double feather)
+    LensWeights(const Panorama& own, const Panorama& other, double seam)
         : m_own(own),
           m_other(other),
           m_pieces(own.target_pieces()),
           m_half_fov(0.5 * own.source().fov() * kDegree),
-          m_feather(feather) {}
+          m_seam(seam) {}
 
     /// Layer::weights of a picture.
     bool operator()(const Box& box, float* weights) const {
@@ -64,7 +64,7 @@ class LensWeights {
         const int piece = piece_at(i, j);
         if (!(m_own.target().inside(x, y, piece) >= 0)) return 0;
         return weight_of(margin(m_own.source_ray(x, y, piece), m_half_fov),
-                         margin(m_other.source_ray(x, y, piece), m_half_fov), m_feather);
+                         margin(m_other.source_ray(x, y, piece), m_half_fov), m_seam);
     }
     int piece_at(int x, int y) const {
         for (std::size_t k = 0; k < m_pieces.size(); ++k)
@@ -75,7 +75,7 @@ class LensWeights {
 
     Panorama m_own, m_other;
     std::vector<Box> m_pieces;
-    double m_half_fov, m_feather;
+    double m_half_fov, m_seam;
 };
 
 /// A picture of two sources that are parts of one.
@@ -137,7 +137,7 @@ ParameterTable rows::fisheye_pair() {
                            ", from where it would look straight " + (lens == "front" ? "ahead" : "behind") +
                            "; in the order of roll, pitch, yaw, before srcyaw turns both"));
     table.push_back(
-        number("feather", "degrees", "0", 0, 360,
+        number("seam", "degrees", "0", 0, 360,
                "of two fisheyes that see more than 180 degrees: how wide the band is in which "
                "both are mixed, in the middle of where both see, and at most all of that; 0: each "
                "direction is seen by the lens within whose rim it lies farther"));
@@ -145,10 +145,10 @@ ParameterTable rows::fisheye_pair() {
 }
 
 FisheyePair::FisheyePair(const ParameterValues& values, const Chart& source)
-    : m_turns{}, m_feather(values.number("feather") * kDegree) {
+    : m_turns{}, m_seam(values.number("seam") * kDegree) {
     const auto given =
         std::find_if(kKeys.begin(), kKeys.end(), [&](const char* key) { return values.given(key); });
-    const std::string key = given == kKeys.end() ? "feather" : *given, text = printable(values.text(key));
+    const std::string key = given == kKeys.end() ? "seam" : *given, text = printable(values.text(key));
     if (source.projection() != Projection::dual_fisheye && source.projection() != Projection::dual_fisheye_tb)
         throw Error(key, text,
                     "must be of from=dual_fisheye or dual_fisheye_tb, not " +
@@ -183,7 +183,7 @@ Picture FisheyePair::picture(const ReprojectRequest& request) const {
     for (const std::size_t i : {0, 1}) {
         Picture::Layer& layer = picture.maps[i].layers.front();
         layer.source = static_cast<int>(i);
-        layer.weights = LensWeights(maps[i], maps[1 - i], m_feather);
+        layer.weights = LensWeights(maps[i], maps[1 - i], m_seam);
     }
     picture.source_count = 2;
     return picture;

@@ -11,7 +11,7 @@ namespace anamorph {
 
 namespace rows {
 
-/// The rows front_yaw to back_roll and feather.
+/// The rows front_yaw to back_roll and seam.
 ParameterTable fisheye_pair();
 
 }  // namespace rows
@@ -19,11 +19,11 @@ ParameterTable fisheye_pair();
 /// Two equidistant fisheyes, of a source dual_fisheye or dual_fisheye_tb, each a map of its own.
 ///
 /// Of a direction at an angle a from a lens's axis, m = srcfov / 2 - a is how far within the rim it lies. What one lens alone sees
-/// (m >= 0) has its colour. Where both see, with the margins m and n, and f the smaller one of feather and m + n, the front's weight
-/// is 1/2 + (m - n) / 2f, between 0 and 1, and the back's is what is left; with feather=0 the larger margin counts alone.
+/// (m >= 0) has its colour. Where both see, with the margins m and n, and f the smaller one of seam and m + n, the front's weight
+/// is 1/2 + (m - n) / 2f, between 0 and 1, and the back's is what is left; with seam=0 the larger margin counts alone.
 class FisheyePair {
   public:
-    /// Takes the lenses' angles and the feather from values. Throws Error where the source has no two fisheyes.
+    /// Takes the lenses' angles and the seam from values. Throws Error where the source has no two fisheyes.
     FisheyePair(const ParameterValues& values, const Chart& source);
 
     /// The picture of two sources, the front lens's and the back one's. `request`: of the source that holds both. Throws Error.
@@ -35,7 +35,7 @@ class FisheyePair {
   private:
     std::array<std::array<double, 3>, 2>
         m_turns;       ///< yaw, pitch and roll of front and back, from straight ahead, in degrees
-    double m_feather;  ///< radians
+    double m_seam;  ///< radians
 };
 
 /// Is any of the rows of fisheye_pair() given, in the values or in the key frames?

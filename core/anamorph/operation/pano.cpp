@@ -75,9 +75,6 @@ std::vector<std::string> face_names() {
     return names;
 }
 
-/// A quarter of the largest face, which has more.
-constexpr int kMostPadding = 1 << 18;
-
 /// Frames over time.
 ParameterTable film_rows() {
     using namespace rows;
@@ -169,13 +166,14 @@ ParameterTable make_pano_table() {
             "own. +x to -z are the faces of cubemap from above, as OpenEXR has them; right to back say where "
             "a face lies; px, nx, py, ny, pz and nz are right to back, of the others alone, as OpenGL has "
             "them"),
-        whole("srcpadding", "pixels", "0", 0, kMostPadding,
-              "of a source of faces, or a fisheye: how many pixels within each edge of every face its field "
-              "of view ends; there the face's own plane goes on; by default what the image says of itself, "
-              "else 0"),
-        whole("padding", "pixels", "0", 0, kMostPadding,
-              "of a picture of faces, or a fisheye: as many pixels within each edge of every face show what "
-              "goes on beyond its field of view, in the face's own plane; size counts them"),
+        text(
+            "srcpadding",
+            "of a source of faces, or a fisheye: how many pixels within each edge of every face its field of "
+            "view ends, less than a quarter of its sides; there the face's own plane goes on; by default "
+            "what the image says of itself, else 0"),
+        text("padding",
+             "of a picture of faces, or a fisheye: as many pixels within each edge of every face show what "
+             "goes on beyond its field of view, in the face's own plane; size counts them; by default 0"),
         text("srclens",
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
@@ -272,6 +270,18 @@ Taken source_projection(const ParameterValues& values, const SourceFacts& source
 /// Is a key given that not all tables have?
 bool is_given(const ParameterValues& values, const std::string& name) {
     return values.knows(name) && values.given(name);
+}
+
+/// The pixels that srcpadding or padding says; none where the table has no such row or it is not given. Throws Error.
+std::optional<int> padding_of(const ParameterValues& values, const std::string& name) {
+    if (!is_given(values, name)) return {};
+    const std::string& text = values.text(name);
+    const bool is_number =
+        !text.empty() && text.size() < 7 && text.find_first_not_of("0123456789") == text.npos;
+    if (!is_number)
+        throw Error(name, printable(text),
+                    "must be an integer from 0 to less than a quarter of the sides of a face, in pixels");
+    return std::stoi(text);
 }
 
 /// The horizontal field of view that is asked for, in degrees or by a focal length; none where it is not. `of`: "src" or nothing.
@@ -492,7 +502,7 @@ Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const LensModel lens = lens_of(values, "lens");
     Size size = values.given("size") ? values.extent("size") : Size{0, -1};
     const Field field = target_field(values, to, d, size);
-    const int padding = values.knows("padding") ? values.whole("padding") : 0;
+    const int padding = padding_of(values, "padding").value_or(0);
     const auto chart = [&](int width, int height, const LensModel& through, int within = 0) {
         return Chart(to, width, height, field.fov, PixelSpacing::edges, "", d, through, field.vertical,
                      within);
@@ -635,9 +645,8 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
         cut.vertical.fov =
             vfov_by_fov(from, fov, facts.width - edge, facts.height - edge, d, facts.pixel_aspect);
     }
-    const double padding = is_given(values, "srcpadding") ? values.whole("srcpadding")
-                           : facts.projection == from     ? facts.padding.value_or(0)
-                                                          : 0;
+    const double said = facts.projection == from ? facts.padding.value_or(0) : 0,
+                 padding = padding_of(values, "srcpadding").value_or(said);
     return {
         Chart(from, facts.width, facts.height, cut.fov, spacing, "src", d, srclens, cut.vertical, padding),
         reason + fov_reason + whole, cut.ahead};

@@ -132,7 +132,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
 void refuse_what_formulas_have_not(const ParameterValues& values) {
     for (const char* name :
          {"fov", "vfov", "focal", "sensor", "d", "e", "lens", "face", "padding", "front_yaw", "front_pitch",
-          "front_roll", "back_yaw", "back_pitch", "back_roll", "feather"})
+          "front_roll", "back_yaw", "back_pitch", "back_roll", "seam"})
         if (values.given(name))
             throw Error(name, printable(values.text(name)),
                         "is of other projections than to=formula: must not be given");
