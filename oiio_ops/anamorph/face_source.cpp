@@ -19,7 +19,11 @@ std::string text_of(const Size& size) {
 std::string channels_of(const ImageSpec& spec) {
     std::string text = "the channels";
     for (int c = 0; c < spec.nchannels; ++c)
-        text += " " + std::string(spec.channel_name(c)) + " (" + spec.channelformat(c).c_str() + ")";
+        text.append(" ")
+            .append(spec.channel_name(c))
+            .append(" (")
+            .append(spec.channelformat(c).c_str())
+            .append(")");
     return text;
 }
 
