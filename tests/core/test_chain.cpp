@@ -512,7 +512,7 @@ TEST(Chain, OfInverseMapsMovesNothing) {
 /// How much of a pixel has a source point, by points of a Fibonacci lattice; no number where anything but edges of pictures in the
 /// middle decides that.
 Real share_of(const std::vector<Link>& links, int x, int y) {
-    constexpr int kPoints = 233, kStep = 144;
+    constexpr int kPoints = 610, kStep = 377;
     const Chart& source = links.back().picture.maps[0].layers[0].border.chart();
     int in = 0;
     for (int n = 0; n < kPoints; ++n) {

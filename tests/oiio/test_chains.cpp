@@ -127,6 +127,12 @@ TEST_F(Chains, LoseNothingOnTheWay) {
 TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
     write_text("dense.json", R"({"columns": 1, "rows": 1, "units": "fractions", "direction": "push",
         "vertices": [[0, 0], [1, 0.02], [0.01, 1], [1, 1]]})");
+    write_text("pairs.csv", "x,y,u,v\n10,10,12,11\n200,20,190,22\n100,140,102,137\n");
+    std::string fine = R"({"columns": 50, "rows": 40, "units": "fractions", "vertices": [)";
+    for (int i = 0; i < 51 * 41; ++i)
+        fine += (i > 0 ? ", [" : "[") + std::to_string(i % 51 / 50.0) + ", " + std::to_string(i / 51 / 40.0) +
+                "]";
+    write_text("fine.json", fine + "]}");
     const struct {
         std::string outer, inner, reason;
     } cases[] = {
@@ -144,6 +150,9 @@ TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
         {"v.pano?from=equirectangular&yaw=180", "plate.exr.map?v=y+1&size=200x100",
          "its source closes on itself, but not what that is drawn from"},
         {"v.pano?from=rectilinear", "plate.exr.warp?mesh=dense.json", "its source has a mesh that pushes"},
+        {"v.pano?from=rectilinear", "plate.exr.warp?points=pairs.csv", "its source has pairs of points"},
+        {"v.warp?mesh=fine.json", "plate.exr.lens?lens=3de4:k1=0.1",
+         "it has a mesh of cells of less than 256 pixels"},
         {"v.pano?from=rectilinear", "plate.exr.drape?", "its source is no picture of maps"},
         {"v.pano?from=cubemap", "plate.exr.pano?from=rectilinear&to=cubemap&size=40", "its source has faces"},
         {"v.pano?from=equirectangular&pixels=centers",
@@ -190,6 +199,86 @@ TEST_F(Chains, HaveOneStmap) {
     double sum = 0;
     for (std::size_t i = 0; i < chain.size(); ++i) sum += std::fabs(chain[i] - by_map[i]);
     EXPECT_LT(sum / static_cast<double>(chain.size()), 1e-3);
+}
+
+/// The pixels of a channel of a picture of `channels`.
+std::vector<float> channel_of(const std::vector<float>& all, std::size_t channels, std::size_t channel) {
+    std::vector<float> one;
+    for (std::size_t i = channel; i < all.size(); i += channels) one.push_back(all[i]);
+    return one;
+}
+
+// Where the picture in the middle ends the chain fades as if that had been drawn first, and eight times as large.
+TEST_F(Chains, HaveSoftEdges) {
+    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 800x600 3 -d float -o white.exr").status, 0);
+    const auto chain = [](const std::string& outer, int scale, const std::string& keys) {
+        return "v.pano?" + outer + keys +
+               "&alpha=1&src=(m.pano?src=white.exr&from=rectilinear&srcfov=120&to=rectilinear&fov=" +
+               "80&yaw=7&pitch=4&roll=3&size=" + std::to_string(120 * scale) + "x" +
+               std::to_string(80 * scale) + ")";
+    };
+    for (const std::string outer : {"from=rectilinear&srcfov=80&fov=100&roll=10&size=140x100",
+                                    "from=rectilinear&srcfov=80&fov=100&yaw=30&size=400x300",
+                                    "from=rectilinear&srcfov=80&to=fisheye&fov=150&roll=5&size=100"}) {
+        SCOPED_TRACE(outer);
+        EXPECT_EQ(chain_of(chain(outer, 1, "")), "pano of pano");
+        const std::vector<float> joined = read_floats(chain(outer, 1, "")),
+                                 drawn = read_floats(chain(outer, 8, "&concatenate=0"));
+        const std::vector<float> alpha = channel_of(joined, 4, 3), truth = channel_of(drawn, 4, 3);
+        double largest = 0, sum = 0;
+        int faded = 0;
+        for (std::size_t i = 0; i < alpha.size(); ++i) {
+            const double off = std::fabs(double{alpha[i]} - double{truth[i]});
+            largest = std::max(largest, off);
+            if (truth[i] > 0 && truth[i] < 1) ++faded, sum += off;
+            // White is faded as alpha is.
+            ASSERT_NEAR(joined[4 * i], alpha[i], 1e-5);
+        }
+        EXPECT_GT(faded, 50);
+        EXPECT_LT(largest, 0.1);
+        EXPECT_LT(sum / faded, 0.03);
+        std::printf("largest %.3f mean %.4f faded %d\n", largest, sum / faded, faded);
+        // Of ids a pixel is in or out.
+        for (const float a : channel_of(read_floats(chain(outer, 1, "&filter=nearest&concatenate=1")), 4, 3))
+            ASSERT_TRUE(a == 0 || a == 1);
+    }
+    expect_one_picture(chain("from=rectilinear&srcfov=80&fov=100&roll=10&size=140x100", 1, ""), 40, 30);
+}
+
+// A map that another program wrote, read by a view: its pixels are points of one smooth map.
+TEST_F(Chains, GoThroughStmaps) {
+    ASSERT_EQ(run("oiiotool --resize 480x320 plate.exr -o large.exr").status, 0);
+    const std::string keys = "lens=brown:k1=-0.21,k2=0.05&fov=84";
+    ASSERT_EQ(run("oiiotool 'large.exr.lens?" + keys + "&output=stmap' -d float -o st.exr").status, 0);
+    ASSERT_EQ(run("oiiotool 'large.exr.lens?" + keys + "&size=all&output=stmap&flip_v=1' -d float -o up.exr")
+                  .status,
+              0);
+    ASSERT_EQ(run("oiiotool st.exr -d half -o rough.exr").status, 0);
+    const std::string view = "v.pano?from=rectilinear&srcfov=84&fov=70&yaw=6&size=400x300&src=";
+    const std::string by_lens = view + "(large.exr.lens?" + keys + ")";
+    for (const std::string map : {"large.exr.warp?mesh=st.exr", "large.exr.warp?mesh=up.exr&flip_v=1"}) {
+        SCOPED_TRACE(map);
+        const std::string name = view + "(" + map + ")";
+        EXPECT_EQ(chain_of(name), "pano of warp");
+        EXPECT_LT(largest_difference(read_floats(name), read_floats(by_lens)), 0.01);
+        EXPECT_LE(open(name)->spec().get_float_attribute("anamorph:max_error"), 0.01f);
+        expect_one_picture(name, 90, 70);
+    }
+    // The map as the outer one, and two of them.
+    ASSERT_EQ(
+        run("oiiotool 'large.exr.lens?mode=distort&" + keys + "&output=stmap' -d float -o back.exr").status,
+        0);
+    const std::string there_and_back = "w.warp?mesh=back.exr&src=(large.exr.warp?mesh=st.exr)";
+    EXPECT_EQ(chain_of(there_and_back), "warp of warp");
+    const std::vector<float> same = read_floats(there_and_back), plate = read_floats("large.exr");
+    for (int y = 100; y < 220; ++y)
+        for (int x = 3 * 150; x < 3 * 330; ++x)
+            ASSERT_NEAR(same[static_cast<std::size_t>(3 * 480 * y + x)],
+                        plate[static_cast<std::size_t>(3 * 480 * y + x)], 5e-3);
+    EXPECT_EQ(chain_of("w.warp?mesh=back.exr&src=(large.exr.lens?" + keys + ")"), "warp of lens");
+    // Half has steps of more than the tolerance.
+    EXPECT_EQ(chain_of(view + "(large.exr.warp?mesh=rough.exr)"),
+              "pano of a picture that is drawn first: its source has an ST-map that is rough or small");
 }
 
 TEST_F(Chains, KeepIntegersAndParts) {

@@ -43,6 +43,7 @@ ChainMap::ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const M
     : m_outer(std::move(outer)),
       m_inner(std::move(inner)),
       m_middle(middle),
+      m_inner_is_chain(dynamic_cast<const LinkOf<ChainMap>*>(m_inner.get()) != nullptr),
       m_pieces(pieces_of(*m_inner, middle.overscan)) {}
 
 Point<double> ChainMap::shift_about(double x) const {
@@ -61,6 +62,13 @@ bool ChainMap::misses(const Point<Interval>& box) const {
     return std::all_of(m_pieces.all().begin(), m_pieces.all().end(), is_beyond);
 }
 
+bool ChainMap::meets_edge(const Point<Interval>& box) const {
+    const Box& frame = m_pieces.frame();
+    const auto is_within = [](const Interval& a, int from, int to) { return a.lo >= from && a.hi <= to; };
+    return !(m_outer->source_period() > 0 || is_within(box.x, frame.x0, frame.x1)) ||
+           !(m_middle.has_poles || is_within(box.y, frame.y0, frame.y1));
+}
+
 ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
     Local local{m_outer->place_around(x, y, piece), {}, -1, {0, 0}};
     Point<double> at;
@@ -75,15 +83,18 @@ ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
     return local;
 }
 
-Cover ChainMap::cover(const Interval& of_x, const Interval& of_y, int piece, const Local& local,
+Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Local& local,
                       bool across_seam) const {
-    const Interval x = widened(of_x, 0.5), y = widened(of_y, 0.5);
     const Cover outer = m_outer->cover(x, y, piece, local.outer, /*across_seam=*/true);
     if (outer != Cover::inside) return outer == Cover::outside ? Cover::outside : Cover::mixed;
+    const Point<Interval> whole =
+        in_middle(m_outer->read(Point<Interval>{widened(x, 0.5), widened(y, 0.5)}, local.outer), local.shift);
+    if (misses(whole)) return Cover::outside;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
-    if (misses(at)) return Cover::outside;
-    if (!local.inner || m_pieces.holding(at.x, at.y) != local.piece) return Cover::mixed;
-    const Cover inner = m_inner->cover(at.x, at.y, local.piece, local.inner, across_seam);
+    if (!local.inner || meets_edge(whole) || m_pieces.holding(at.x, at.y) != local.piece) return Cover::mixed;
+    // Edges that the inner map has on its way are crossed by whole pixels too.
+    const Point<Interval>& points = m_inner_is_chain ? whole : at;
+    const Cover inner = m_inner->cover(points.x, points.y, local.piece, local.inner, across_seam);
     return inner == Cover::partial ? Cover::mixed : inner;
 }
 

@@ -63,7 +63,7 @@ class ChainMap {
     int target_period() const { return m_outer->target_period(); }
     bool reads_computed_points() const { return m_outer->reads_computed_points(); }
     Local local_around(double x, double y, int piece) const;
-    /// Of whole pixels about the centres in a box: those that an edge crosses are drawn in part.
+    /// Of edges for whole pixels about the centres in a box: those that an edge crosses are drawn in part.
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
 
     template <class T>
@@ -110,6 +110,8 @@ class ChainMap {
     int piece_at(double x, double y) const { return m_pieces.holding(Interval(x), Interval(y)); }
     /// Is all of a box outside of the picture in the middle, which may close across?
     bool misses(const Point<Interval>& box) const;
+    /// Does a box reach beyond an edge of the picture in the middle?
+    bool meets_edge(const Point<Interval>& box) const;
 
     double exact_error(const Interval& x, const Interval& y, int piece, double off,
                        bool in_long_double) const;
@@ -118,6 +120,7 @@ class ChainMap {
 
     std::shared_ptr<const MapLink> m_outer, m_inner;
     MiddlePicture m_middle;
+    bool m_inner_is_chain;
     PieceFinder m_pieces;  ///< of the picture in the middle
 };
 
