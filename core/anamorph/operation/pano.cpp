@@ -332,7 +332,7 @@ double fov_by_vfov(Projection projection, double vfov, const Size& size, const D
 
 /// The vertical field of view that pixels, so many times as wide as high, make of a horizontal one. Throws Error where there is
 /// none.
-double vfov_by_fov(Projection projection, double fov, double width, double height, double d,
+double vfov_by_fov(Projection projection, double fov, double width, double height, const Distance& d,
                    double pixel_aspect) {
     const std::string pixels = "source has PixelAspectRatio=" + shortest(static_cast<float>(pixel_aspect));
     if (fov_of(projection).fixed || has_faces(projection))
