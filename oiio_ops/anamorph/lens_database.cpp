@@ -113,7 +113,7 @@ class Database {
     /// With the mutex held.
     static const lfDatabase& get(const std::string& parameter, const std::string& text) {
         static lfDatabase* const loaded = [] {
-            lfDatabase* database = lfDatabase::Create();
+            lfDatabase* database = new lfDatabase;
             return database->Load() == LF_NO_ERROR ? database : nullptr;
         }();
         if (!loaded)
