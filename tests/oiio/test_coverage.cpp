@@ -214,7 +214,7 @@ TEST_F(Coverage, IsWhatTheFileHas) {
 TEST_F(Coverage, IsWhatTheFileHasOfParts) {
     write_framed("part.exr", {31, 77, 12, 53});
     for (const std::string keys : {"from=latlong&fov=110", "from=latlong&to=fisheye&fov=300&yaw=100",
-                                   "from=latlong&fov=110&wrap=black", "from=cylindrical&fov=90",
+                                   "from=latlong&fov=110&wrap=black", "from=cylindrical&fov=160",
                                    "from=latlong&srcfov=180&stereo=side-by-side&eye=right&fov=110"}) {
         const std::string recipe = "part.exr.pano?size=60x40&" + keys;
         SCOPED_TRACE(recipe);

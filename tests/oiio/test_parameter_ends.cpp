@@ -108,6 +108,8 @@ class ParameterEnds : public InFolder {
             add(of.empty() ? "to" : "from", "rectilinear");
             if (key == of + "sensor") arguments.push_back({of + "focal", "24"});
         }
+        if (key == "d") add("to", "pannini");
+        if (key == "srcd") add("from", "pannini");
         if (key == "face") {
             const bool is_opengl = value.starts_with('p') || value.starts_with('n');
             add("to", is_opengl ? "cubemap3x2" : "cubemap");
