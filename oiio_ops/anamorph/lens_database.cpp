@@ -132,11 +132,10 @@ std::vector<const Item*> listed(const Item** found) {
     return list;
 }
 
-/// A name of the database; Lensfun's names may be there in several languages.
+/// A name of the database: the first of several, which is the same whatever the locale is.
 template <class Item>
 std::string name_of(const Item& item) {
-    const std::string by = item.Maker ? lf_mlstr_get(item.Maker) : "",
-                      what = item.Model ? lf_mlstr_get(item.Model) : "";
+    const std::string by = item.Maker ? item.Maker : "", what = item.Model ? item.Model : "";
     return what.starts_with(by) ? what : by + " " + what;
 }
 
@@ -321,7 +320,8 @@ FoundLens find_lens(const std::string& parameter, const LensName& asked, const S
     const bool is_real = lens.InterpolateRealFocal(static_cast<float>(focal), real);
     const double millimetres = is_real ? real.RealFocal / found.model.magnification() : focal;
     found.focal_length = millimetres * crop / std::hypot(36, 24) * std::hypot(size.width, size.height);
-    found.name = name_of(lens) + ", " + brief(focal) + " mm, crop factor " + brief(crop) + " (Lensfun)";
+    found.name = name_of(lens) + ", " + shortest(static_cast<float>(focal)) + " mm, crop factor " +
+                 shortest(static_cast<float>(crop)) + " (Lensfun)";
     return found;
 }
 
@@ -333,6 +333,11 @@ FoundLens find_lens(const std::string& parameter, const LensName& asked, const S
 }
 
 #endif
+
+/// Is a key given that not all operations have?
+bool is_given(const ParameterValues& values, const char* name) {
+    return values.knows(name) && values.given(name);
+}
 
 /// The size of the picture that is seen through a lens: the source's, or for that of a picture what is asked for.
 Size size_through(const Operation& operation, const ParameterValues& values, const std::string& parameter,
@@ -362,7 +367,7 @@ Attributes find_lenses(const Operation& operation, ParameterValues& values,
                        const std::vector<OIIO::ImageSpec>& specs, std::vector<SourceImage>& sources) {
     Attributes says;
     for (const std::string parameter : {"srclens", "lens"}) {
-        if (!values.knows(parameter) || !values.given(parameter) || sources.empty()) continue;
+        if (!is_given(values, parameter.c_str()) || sources.empty()) continue;
         const std::string text = values.text(parameter);
         if (!is_of_database(text)) continue;
         LensName name = parse_name(parameter, text);
@@ -374,9 +379,18 @@ Attributes find_lenses(const Operation& operation, ParameterValues& values,
         values.set(parameter, found.model.text());
         says.push_back({"anamorph:" + parameter, found.name});
         if (parameter != "srclens" || facts.projection || !found.projection) continue;
+        const double width = size.width / found.focal_length,
+                     fov = fov_of_plane_width(*found.projection, width);
+        // A circle that does not fill the picture: fields of view are those of its edges.
+        if (!(plane_width(*found.projection, fov) >= width * (1 - 1e-9))) {
+            if (is_given(values, "from") && is_given(values, "srcfov")) continue;
+            throw Error(
+                parameter, name.text,
+                found.name + " does not fill the width of its picture: from and srcfov must be given");
+        }
         facts.projection = found.projection;
         facts.said_by = "Lensfun";
-        facts.fov = fov_of_plane_width(*found.projection, size.width / found.focal_length);
+        facts.fov = fov;
     }
     return says;
 }

@@ -79,6 +79,7 @@ class Oracle {
             case Projection::eucm:
             case Projection::double_sphere:
                 m_half = of_sphere(h);
+                m_end = sphere_end();
                 break;
             case Projection::orthographic:
                 m_half = std::sin(h);
@@ -242,7 +243,7 @@ class Oracle {
                                           : turned((m_d + 1) * std::sin(t) / (m_d + std::cos(t)), v);
             case Projection::eucm:
             case Projection::double_sphere:
-                return t >= sphere_end() ? kNoPoint : turned(of_sphere(t), v);
+                return t >= m_end ? kNoPoint : turned(of_sphere(t), v);
             case Projection::sinusoidal:
                 return {a * std::cos(e), e};
             case Projection::hammer: {
@@ -296,10 +297,10 @@ class Oracle {
     }
     /// By halving; `edge`: the largest radius.
     Real sphere_angle(Real r, Real& edge) const {
-        Real low = 0, high = sphere_end();
+        Real low = 0, high = m_end;
         edge = of_sphere(high);
         if (m_e <= 0.5L) edge = HUGE_VALL;
-        for (int i = 0; i < 120; ++i) {
+        for (int i = 0; i < 80; ++i) {
             const Real middle = (low + high) / 2;
             (of_sphere(middle) < r ? low : high) = middle;
         }
@@ -322,7 +323,7 @@ class Oracle {
 
     Projection m_projection;
     int m_width, m_height;
-    Real m_d, m_e, m_half = 1;
+    Real m_d, m_e, m_half = 1, m_end = 0;
     int m_spans;  ///< pixels that 2 m_half cover, of pictures without faces and of the octahedron's
 };
 
@@ -363,11 +364,11 @@ const Case kCases[] = {
     {Projection::eucm, 30, 20, 150, 1.1, PixelSpacing::edges, 0.6},
     {Projection::eucm, 30, 20, 110, 2, PixelSpacing::edges, 0},
     {Projection::eucm, 25, 31, 100, 0.7, PixelSpacing::edges, 0.35},
-    {Projection::eucm, 30, 20, 190, 1.6, PixelSpacing::centers, 0.62},
+    {Projection::eucm, 30, 20, 190, 1.6, PixelSpacing::edges, 0.62},
     {Projection::eucm, 30, 20, 120, 0.25, PixelSpacing::edges, 1},
     {Projection::double_sphere, 30, 20, 150, -0.2, PixelSpacing::edges, 0.6},
     {Projection::double_sphere, 25, 31, 100, 0.4, PixelSpacing::edges, 0.3},
-    {Projection::double_sphere, 30, 20, 200, 0.1, PixelSpacing::centers, 0.55},
+    {Projection::double_sphere, 30, 20, 200, 0.1, PixelSpacing::edges, 0.55},
     {Projection::double_sphere, 30, 20, 200, 0.8, PixelSpacing::edges, 1},
     {Projection::double_sphere, 30, 20, 300, 1, PixelSpacing::edges, 0.7},
     {Projection::double_sphere, 30, 20, 120, -0.9, PixelSpacing::edges, 0.5},

@@ -5,6 +5,7 @@
 #include <OpenImageIO/imagebufalgo.h>
 
 #include <cmath>
+#include <map>
 
 #include "anamorph/metadata.h"
 #include "anamorph/oiio_ops.h"
@@ -142,8 +143,7 @@ double tolerance_at(double far) {
 
 const lfLens* lens_named(const std::string& name, double crop) {
     for (const lfLens* const* lens = database().GetLenses(); *lens; ++lens)
-        if (lf_mlstr_get((*lens)->Model) == name && std::fabs((*lens)->CropFactor - crop) < 1e-3)
-            return *lens;
+        if ((*lens)->Model == name && std::fabs((*lens)->CropFactor - crop) < 1e-3) return *lens;
     ADD_FAILURE() << name << " is not in the database";
     return nullptr;
 }
@@ -215,74 +215,54 @@ TEST(LensDatabase, DrawsWhereLensfunDoes) {
     }
 }
 
-/// A chart whose lens is that of the text; none where that folds within the picture.
-std::optional<Chart> chart_with(const std::string& lens, const Size& size) {
-    try {
-        return Chart(Projection::rectilinear, size.width, size.height, 60, PixelSpacing::edges, "", 1,
-                     LensModel::parse(lens));
-    } catch (const Error&) {
-        return {};
-    }
-}
-
-/// Every lens of the database at every focal length at which it was measured.
+/// Every lens of the database that has a name of its own, at one of the focal lengths at which it was measured.
 TEST(LensDatabase, PutsPixelsOfEveryLensWhereLensfunDoes) {
-    int lenses = 0, named = 0, compared = 0, folding = 0, models[4] = {};
+    std::map<std::string, int> names;
+    for (const lfLens* const* at = database().GetLenses(); *at; ++at) ++names[(*at)->Model];
+    int lenses = 0, compared = 0, models[4] = {};
     const Size size{900, 600};
     for (const lfLens* const* at = database().GetLenses(); *at; ++at) {
         const lfLens& lens = **at;
-        if (!lens.CalibDistortion) continue;
+        const std::string name = lens.Model;
+        if (!lens.CalibDistortion || names[name] > 1) continue;
         ++lenses;
-        const std::string name = lf_mlstr_get(lens.Model);
-        bool is_named = false;
-        for (int i = 0; lens.CalibDistortion[i]; ++i) {
-            const double focal = lens.CalibDistortion[i]->Focal;
-            const std::string text =
-                "lensfun:lens=" + name + ",crop=" + shortest(lens.CropFactor) + ",focal=" + shortest(focal);
-            Found result;
-            try {
-                result = found("lens", "lens", text, photo(size));
-            } catch (const Error&) {
-                continue;  // several of that name, or a name that is read as another's
-            }
-            // Two of one name and crop factor, for other mounts, are not told apart by name alone.
-            lfLensCalibDistortion distortion;
-            ASSERT_TRUE(lens.InterpolateDistortion(static_cast<float>(focal), distortion));
-            const std::optional<Chart> chart = chart_with(result.lens, size);
-            folding += !chart;
-            if (!chart) continue;
-            const Reference reference(lens, lens.CropFactor, focal, size);
-            const double scale = chart->scale_x();
-            const LensModel& model = chart->lens()->model();
-            const double d = model.values[5], e = model.values[6];
-            double worst = 0;
-            for (const auto& [x, y] :
-                 {std::pair{450.0, 300.0}, {453.0, 296.0}, {700.5, 130.25}, {60.0, 580.0}, {880.0, 20.0}}) {
-                const Point<double> p = reference.source(x, y);
-                // Of a picture whose axis stays where it is.
-                const Point<double> ideal{(x - 450 - d) / scale, (y - 300 - e) / scale};
-                if (!(chart->lens()->sees(ideal) > 0) || std::isnan(p.x)) continue;
-                const Point<double> q = chart->lens()->observed(ideal);
-                worst = std::max(worst, std::hypot(q.x * scale + 450 - p.x, q.y * scale + 300 - p.y));
-            }
-            if (worst > tolerance_at(1000) && result.says.find(name) == std::string::npos) continue;
-            is_named = true;
-            ++compared;
-            ++models[distortion.Model];
-            EXPECT_LT(worst, tolerance_at(1000)) << text << " is " << result.says << " " << result.lens;
+        int count = 0;
+        while (lens.CalibDistortion[count]) ++count;
+        const double focal = lens.CalibDistortion[lenses % count]->Focal;
+        const std::string text =
+            "lensfun:lens=" + name + ",crop=" + shortest(lens.CropFactor) + ",focal=" + shortest(focal);
+        Found result;
+        try {
+            result = found("lens", "lens", text, photo(size));
+        } catch (const Error&) {
+            continue;  // several have these words
         }
-        named += is_named;
+        if (result.says.find(name) == std::string::npos) continue;
+        lfLensCalibDistortion distortion;
+        ASSERT_TRUE(lens.InterpolateDistortion(static_cast<float>(focal), distortion));
+        const Chart chart(Projection::rectilinear, size.width, size.height, 60, PixelSpacing::edges, "", 1,
+                          LensModel::parse(result.lens));
+        const Reference reference(lens, lens.CropFactor, focal, size);
+        const LensModel& model = chart.lens()->model();
+        const double scale = chart.scale_x(), d = model.values[5], e = model.values[6];
+        for (const auto& [x, y] :
+             {std::pair{450.0, 300.0}, {453.0, 296.0}, {700.5, 130.25}, {60.0, 580.0}, {880.0, 20.0}}) {
+            const Point<double> p = reference.source(x, y);
+            // Of a picture whose axis stays where it is.
+            const Point<double> ideal{(x - 450 - d) / scale, (y - 300 - e) / scale};
+            if (!(chart.lens()->sees(ideal) > 0) || std::isnan(p.x)) continue;
+            const Point<double> q = chart.lens()->observed(ideal);
+            EXPECT_LT(std::hypot(q.x * scale + 450 - p.x, q.y * scale + 300 - p.y), tolerance_at(1000))
+                << text << " is " << result.says << " " << result.lens;
+        }
+        ++compared;
+        ++models[distortion.Model];
     }
     RecordProperty("lenses", lenses);
-    RecordProperty("named", named);
     RecordProperty("compared", compared);
-    RecordProperty("folding", folding);
-    std::cout << lenses << " lenses, " << named << " found by name, " << compared
-              << " calibrations compared, " << folding << " fold within the picture\n";
-    EXPECT_GT(named, 0.8 * lenses);
-    EXPECT_GT(models[LF_DIST_MODEL_POLY3], 200);
-    EXPECT_GT(models[LF_DIST_MODEL_POLY5], 3);
-    EXPECT_GT(models[LF_DIST_MODEL_PTLENS], 2000);
+    EXPECT_GT(compared, 0.8 * lenses);
+    EXPECT_GT(models[LF_DIST_MODEL_POLY3], 100);
+    EXPECT_GT(models[LF_DIST_MODEL_PTLENS], 400);
 }
 
 TEST(LensDatabase, KnowsAPhotosLensByItsMetadata) {

@@ -86,11 +86,12 @@ Series<T, N> choose_if_negative(const Series<T, N>& a, const Series<T, N>& then,
     return s;
 }
 
-/// The sum g + sqrt(g^2 + t^2) by the square of t, without cancellation where g is negative.
+/// The sum g + sqrt(g^2 + t^2) by the square of t, without cancellation where g is negative. The quotient is chosen there only:
+/// in the middle, where it is none, g is positive.
 template <class T>
 T add_length(const T& g, const T& squared) {
-    const T n = root_of(T(g * g + squared)), size = choose_if_negative(g, T(T(0) - g), g);
-    return choose_if_negative(g, T(squared / (n + size)), T(n + g));
+    const T n = root_of(T(g * g + squared));
+    return choose_if_negative(g, T(squared / (n - g)), T(n + g));
 }
 
 /// A constant as a factor of a number, or of a series of numbers.

@@ -34,9 +34,9 @@ ParameterTable make_lens_table() {
              "(k1, k2), "
              "kb4 (k1 to k4), division (k1, k2), poly (k0 to k4) or ocam (a0, a2, a3, a4), and d, e, the "
              "shift of its "
-             "centre in pixels, which stays "
-             "where it is; by "
-             "default what the image says of itself"),
+             "centre in pixels, which stays where it is; or lensfun:lens=NAME,camera=NAME,focal=35; by "
+             "default what the "
+             "image says of itself"),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture that was taken through the lens, without the "
                      "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
