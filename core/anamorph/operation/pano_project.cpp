@@ -458,10 +458,10 @@ ParameterTable rows::project() {
         whole("image", "", "", 0, static_cast<int>(kMostHuginImages) - 1,
               "of a project of Hugin as src: the image that is drawn, by its number there, from 0; by "
               "default all of them, over each other"),
-        enumeration("layers", "order",
-                    {{"order", Layering::over, "later images cover those before them"},
-                     {"blend", Layering::mean, "their mean, by weights that rise from their edges"}},
-                    "of the images of a project: which are seen where they overlap"),
+        enumeration(
+            "layers", "order", {{"order", Layering::over}, {"blend", Layering::mean}},
+            "of the images of a project, which are seen where they overlap: order, later images cover those "
+            "before them; blend, their mean, by weights that rise from their edges"),
         number("feather", "source pixels", "", 0, 1e6,
                "of layers: the distance from an image's edges, or those of its crop, at which its weight has "
                "risen from 0 to 1; by "

@@ -209,7 +209,7 @@ class Images {
         const auto add = [&](std::string_view name) {
             names += (names.empty() ? "" : ", ") + std::string(name);
         };
-        for (const std::size_t i : all())
+        for (std::size_t i = 0; i < m_rows.size(); ++i)
             if (const std::optional<double> own = number_of(i, "Eev")) {
                 if (!exposure) exposure = own;
                 if (*own == *exposure) continue;
@@ -217,10 +217,7 @@ class Images {
                 break;
             }
         for (const auto& [name, neutral] : photometric_names())
-            if (const auto images = all(); std::any_of(images.begin(), images.end(), [&](std::size_t i) {
-                    return number_of(i, name).value_or(neutral) != neutral;
-                }))
-                add(name);
+            if (is_anywhere_other(name, neutral)) add(name);
         for (const Row& row : m_rows)
             if (const auto flat = row.values.find("Vf"); flat != row.values.end() && !flat->second.empty()) {
                 add("Vf");
@@ -238,12 +235,12 @@ class Images {
         std::vector<Point<double>> corners;
     };
 
-    std::vector<std::size_t> all() const {
-        std::vector<std::size_t> numbers(m_rows.size());
-        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
-        return numbers;
+    /// Has any image another number there?
+    bool is_anywhere_other(std::string_view name, double than) const {
+        for (std::size_t i = 0; i < m_rows.size(); ++i)
+            if (number_of(i, name).value_or(than) != than) return true;
+        return false;
     }
-
     static std::string_view value_of_row(const Row& row, std::string_view name) {
         const auto found = row.values.find(name);
         if (found == row.values.end()) throw Error(std::string(name) + " is missing: must be given");
