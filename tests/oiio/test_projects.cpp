@@ -40,7 +40,7 @@ TEST_F(Projects, EveryHostReadsOnePicture) {
          {"two.pto?layers=order", "two.pto?layers=blend", "two.pto.pano?image=1&yaw=20&to=fisheye&size=90x70",
           "x.pano?src=two.pto&feather=7&overscan=9x5"})
         expect_one_picture(name, 30, 12);
-    EXPECT_EQ(says("two.pto", "anamorph:from"), "rectilinear (layers of a project of 2)");
+    EXPECT_EQ(says("two.pto", "anamorph:from"), "2 layers of a project of 2");
     EXPECT_EQ(says("two.pto?image=1", "anamorph:from"), "fisheye (image 1 of a project of 2)");
     EXPECT_EQ(says("two.pto", "anamorph:not_applied"), "");
     EXPECT_EQ(read_floats("two.pto").size(), 128u * 64 * 3);

@@ -329,11 +329,13 @@ struct ProjectRequest {
     std::vector<SourceImage> sources;
 
     bool is_layered() const { return images.size() > 1 || images[0].is_cut; }
-    /// The first source, and what is drawn of all.
-    TakenSource first() const {
-        const std::string of_all = " of a project of " + std::to_string(project->images.size());
-        return {images[0].chart,
-                images.size() > 1 ? "layers" + of_all : "image " + std::to_string(numbers[0]) + of_all};
+    std::string of_all() const { return " of a project of " + std::to_string(project->images.size()); }
+    /// The first source.
+    TakenSource first() const { return {images[0].chart, "image " + std::to_string(numbers[0]) + of_all()}; }
+    /// What is said of the source of all.
+    Attribute says() const {
+        if (images.size() == 1) return first().says();
+        return {"anamorph:from", std::to_string(images.size()) + " layers" + of_all()};
     }
 };
 
@@ -510,7 +512,7 @@ std::unique_ptr<const Pictures> pictures_of_project(const OperationInput& input)
         const Orientation look = read_orientation(values);
         if (!request.is_layered())
             return reprojected_pictures({request.first(), target, look, request.images[0].held, options});
-        LayersRequest layers{request.images, target, look, options, {}, {}, {}, {}, request.first().says()};
+        LayersRequest layers{request.images, target, look, options, {}, {}, {}, {}, request.says()};
         layers.layering = rows::chosen<Layering>(values, "layers");
         if (values.given("feather")) layers.feather = values.number("feather");
         layers.channels = request.sources[0].channels;
