@@ -108,8 +108,10 @@ class ParameterEnds : public InFolder {
             add(of.empty() ? "to" : "from", "rectilinear");
             if (key == of + "sensor") arguments.push_back({of + "focal", "24"});
         }
-        if (key == "d") add("to", "pannini");
-        if (key == "srcd") add("from", "pannini");
+        if (key == "d" || key == "srcd") {
+            add(key == "d" ? "to" : "from", "pannini");
+            arguments.push_back({key == "d" ? "fov" : "srcfov", "90"});
+        }
         if (key == "face") {
             const bool is_opengl = value.starts_with('p') || value.starts_with('n');
             add("to", is_opengl ? "cubemap3x2" : "cubemap");

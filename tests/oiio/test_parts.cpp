@@ -209,5 +209,51 @@ TEST_F(Parts, AreReadFromThreadsInAnyOrder) {
     EXPECT_EQ(wrong, 0);
 }
 
+// The picture on the far side of a drape goes part by part with that on this side where it has as many, and is its first else.
+TEST_F(Parts, TheFarSideOfADrapeHasThemToo) {
+    for (const char* side : {"front", "back"})
+        for (const int i : {0, 1})
+            write_image(panorama(40, 30, OIIO::TypeHalf, 3), side + std::to_string(i) + ".exr");
+    ASSERT_EQ(run("oiiotool front0.exr front1.exr --mulc 0.5 --siappend -o fronts.exr").status, 0);
+    ASSERT_EQ(run("oiiotool back0.exr --mulc 0.3 back1.exr --mulc 0.7 --siappend -o backs.exr").status, 0);
+    const std::string view = "v.drape?surface=plane&rotate=0,180,0&size=40x30&filter=nearest";
+    const std::string both = view + "&src=fronts.exr&back=backs.exr",
+                      one = view + "&src=fronts.exr&back=back0.exr";
+    for (const int i : {0, 1}) {
+        const std::string number = std::to_string(i);
+        ASSERT_EQ(run("oiiotool --subimage " + number + " backs.exr -o alone" + number + ".exr").status, 0);
+        const Pixels truth = part_of(view + "&src=front0.exr&back=alone" + number + ".exr", 0);
+        EXPECT_EQ(part_of(both, i), truth) << i;
+        EXPECT_EQ(part_of(both + "&subimage=" + number, 0), truth) << i;
+        EXPECT_EQ(part_of(one, i), part_of(view + "&src=front0.exr&back=back0.exr", 0)) << i;
+    }
+    EXPECT_NE(part_of(both, 0), part_of(both, 1));
+}
+
+// What is wrong with a file that is no source begins with the key that names it; what is too large names what made it so.
+TEST_F(Parts, ErrorsNameTheirKeys) {
+    EXPECT_THAT(open_error("beauty.exr.warp?mesh=none.json"),
+                HasSubstr("mesh: file \"none.json\" does not exist"));
+    EXPECT_THAT(open_error("beauty.exr.warp?mesh=none.exr"), HasSubstr("mesh: image \"none.exr\""));
+    EXPECT_THAT(open_error("beauty.exr.drape?surface=positions&positions=none.exr"),
+                HasSubstr("positions: image \"none.exr\""));
+    EXPECT_THAT(open_error("beauty.exr.drape?height=none.exr"), HasSubstr("height: image \"none.exr\""));
+    EXPECT_THAT(open_error("beauty.exr.drape?deform=none.json"), HasSubstr("deform: file \"none.json\""));
+    EXPECT_THAT(open_error("beauty.exr.morph?b=beauty.exr&features=none.csv"),
+                HasSubstr("features: file \"none.csv\" does not exist"));
+    EXPECT_THAT(open_error("beauty.exr.pano?from=latlong&keys=none.json"),
+                HasSubstr("keys: file \"none.json\""));
+    EXPECT_THAT(open_error("beauty.exr.map?overscan=500000"), HasSubstr("overscan=1000096x1000064"));
+    EXPECT_THAT(open_error("beauty.exr.map?size=1000000x1000000"), HasSubstr("size=1000000x1000000"));
+    // Keys that mean nothing where they stand.
+    EXPECT_THAT(open_error("beauty.exr.pano?from=latlong&d=0.5"),
+                HasSubstr("d=0.5: is of pannini and unified: must not be given with to=rectilinear"));
+    EXPECT_THAT(open_error("beauty.exr.pano?from=latlong&srcd=0.5"),
+                HasSubstr("must not be given with from=equirectangular"));
+    for (const std::string output : {"stmap", "bound", "error", "coverage"})
+        EXPECT_THAT(open_error("beauty.exr.map?alpha=1&output=" + output),
+                    HasSubstr("alpha=1: is of output=color: must not be given with output=" + output));
+}
+
 }  // namespace
 }  // namespace anamorph
