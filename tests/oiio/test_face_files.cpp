@@ -122,6 +122,21 @@ TEST_F(FaceFilesInAFolder, OfOpenExrAreThoseOfItsStrip) {
     EXPECT_EQ(largest_difference(read_floats("grid_{face}.exr.pano?from=cubemap3x2" + view), grid), 0);
 }
 
+// In a chain the files themselves are sampled.
+TEST_F(FaceFilesInAFolder, AreDrawnByOneResampling) {
+    cut_grid();
+    const std::string chain = "x.lens?lens=3de4:k1=0.1&filter=bilinear&src=(";
+    const auto of = [](const std::string& source) {
+        return source + "?filter=bilinear&fov=70&pitch=40&size=40x30&";
+    };
+    EXPECT_EQ(read_floats(chain + of("sky_{face}.exr.pano") + "yaw=5)"),
+              read_floats(chain + of("grid.exr.pano") + "yaw=5&from=cubemap3x2)"));
+    EXPECT_EQ(std::string(open(chain + of("sky_{face}.exr.pano") + "yaw=5)")
+                              ->spec()
+                              .get_string_attribute("anamorph:chain")),
+              "lens of pano");
+}
+
 // Pictures of one face each, by the words of the key, are read again as a cube.
 TEST_F(FaceFilesInAFolder, AreWrittenByTheKeyFace) {
     const auto written = [](const std::string& to, const Names& words, const std::string& before) {
