@@ -11,7 +11,7 @@ namespace anamorph {
 namespace {
 
 // The part of the tolerance that a cubic may be off the samples' map.
-constexpr double kShare = 0.25;
+constexpr double kShare = 0.5;
 // Cubics are fitted to so many samples each way, or one more.
 constexpr int kFitted = 8;
 
@@ -120,24 +120,33 @@ SampleMap::Local SampleMap::fitted(int first_column, int first_row) const {
                 2.0 / window};
     fit.fit(sample, local.cx, local.cy);
     // The farthest that samples are off, row by row; along a row a cubic is one of s.
-    Point<double> off{0, 0};
+    constexpr int kMost = kLayouts[0].window;
+    double at_x[kMost], at_y[kMost], off_x = 0, off_y = 0;
     for (int j = 0; j < window; ++j) {
         const double t = CubicFit::place(j, window);
-        const auto on_row = [&](const double* c) {
-            return std::array{c[0] + t * (c[2] + t * (c[5] + t * c[9])), c[1] + t * (c[4] + t * c[8]),
-                              c[3] + t * c[7], c[6]};
+        m_lattice->points(first_column, first_row + j, window, at_x, at_y);
+        const auto subtract = [&](const double* c, double* at) {
+            const double c0 = c[0] + t * (c[2] + t * (c[5] + t * c[9])), c1 = c[1] + t * (c[4] + t * c[8]),
+                         c2 = c[3] + t * c[7], c3 = c[6];
+            for (int i = 0; i < window; ++i) {
+                const double s = CubicFit::place(i, window);
+                at[i] = std::fabs(c0 + s * (c1 + s * (c2 + s * c3)) - at[i]);
+            }
         };
-        const auto x = on_row(local.cx), y = on_row(local.cy);
-        for (int i = 0; i < window; ++i) {
-            const double s = CubicFit::place(i, window);
-            const Point<double> at = sample(i, j);
-            const double dx = std::fabs(x[0] + s * (x[1] + s * (x[2] + s * x[3])) - at.x),
-                         dy = std::fabs(y[0] + s * (y[1] + s * (y[2] + s * y[3])) - at.y);
-            // Written so that a hole is off for good.
-            off.x = dx <= off.x ? off.x : dx;
-            off.y = dy <= off.y ? off.y : dy;
-            if (std::isnan(dx + dy)) return local;
-        }
+        subtract(local.cx, at_x);
+        subtract(local.cy, at_y);
+        // The largest, four by four; a hole makes the sum no number.
+        const auto most = [&](const double* at) {
+            double largest[4] = {}, sum = 0;
+            for (int i = 0; i + 4 <= window; i += 4)
+                for (int k = 0; k < 4; ++k) {
+                    largest[k] = at[i + k] > largest[k] ? at[i + k] : largest[k];
+                    sum += at[i + k];
+                }
+            return std::isnan(sum) ? HUGE_VAL : std::max({largest[0], largest[1], largest[2], largest[3]});
+        };
+        off_x = std::max(off_x, most(at_x));
+        off_y = std::max(off_y, most(at_y));
     }
     // A cubic's coefficients are those of units of half a window. What double rounds of the cubic, here and where it is read:
     // less than 64 units of its size, and that of the samples.
@@ -149,7 +158,7 @@ SampleMap::Local SampleMap::fitted(int first_column, int first_row) const {
                0.0963 * cubed * (std::fabs(c[6]) + std::fabs(c[9])) + 0x1p-47 * size;
     };
     const double error =
-        std::hypot(error_of(off.x, local.cx), error_of(off.y, local.cy)) * rounded_detail::kUp;
+        std::hypot(error_of(off_x, local.cx), error_of(off_y, local.cy)) * rounded_detail::kUp;
     if (!(error <= kShare * m_tol)) return local;
     local.error = error;
     // Cells in which all four lines are samples of the window.

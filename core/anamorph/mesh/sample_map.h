@@ -92,7 +92,7 @@ class SampleMap {
     struct Layout {
         int window, step;
     };
-    static constexpr Layout kLayouts[] = {{68, 32}, {36, 16}};
+    static constexpr Layout kLayouts[] = {{68, 32}, {36, 16}};  ///< windows are multiples of four
 
     template <class T>
     static Point<T> cubic(const T& x, const T& y, const Local& local) {

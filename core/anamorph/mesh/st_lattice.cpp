@@ -41,6 +41,24 @@ Point<double> StLattice::point(int column, int row) const {
     return {here.x + (there.x - here.x) * m_amount, here.y + (there.y - here.y) * m_amount};
 }
 
+void StLattice::points(int column, int row, int count, double* x, double* y) const {
+    const float* const from = sample(column, row);
+    const double width = m_source.width, height = m_source.height;
+    // Exactly v, or 1 - v.
+    const double first = m_samples->v_up ? 1 : 0, sign = m_samples->v_up ? -1 : 1;
+    for (int i = 0; i < count; ++i) {
+        x[i] = double{from[2 * i]} * width;
+        y[i] = (first + sign * double{from[2 * i + 1]}) * height;
+    }
+    if (m_amount == 1) return;
+    const double below = (row + 0.5) * m_scale.y;
+    for (int i = 0; i < count; ++i) {
+        const double across = (column + i + 0.5) * m_scale.x;
+        x[i] = across + (x[i] - across) * m_amount;
+        y[i] = below + (y[i] - below) * m_amount;
+    }
+}
+
 /// The displacement of a vertex of the lattice, of which the outermost go on linearly by half a pixel.
 Point<double> StLattice::displacement(int column, int row) const {
     const auto beyond = [](const Point<double>& edge, const Point<double>& inner) {

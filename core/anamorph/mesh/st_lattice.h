@@ -31,6 +31,8 @@ class StLattice {
     /// The source point of a pixel; NaN where that is a hole. Without rounding where `amount` is 1 and v goes down, since u is a
     /// float and the source's width has 21 bits.
     Point<double> point(int column, int row) const;
+    /// What point() says of `count` pixels of a row.
+    void points(int column, int row, int count, double* x, double* y) const;
     /// The rounding of point() in double, whichever way it is computed.
     double rounding() const;
 
