@@ -11,6 +11,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/figure/body/surface_steps.h"
 #include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
@@ -35,10 +36,8 @@ using anamorph::figure::Ellipsoid;
 using anamorph::figure::View;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMostSteps = 1 << 12;  ///< either way
 /// About 0.8 GB with the arrays of the bodies; a renderer needs as much again.
 constexpr vtkIdType kMostTriangles = vtkIdType{1} << 22;
-constexpr int kLeastRows = 4, kLeastColumns = 6;
 
 /// A grid over an ellipsoid. Its poles are a point for each column, between the grid's lines.
 struct Grid {
@@ -61,20 +60,13 @@ struct Body {
     double tolerance;
 };
 
-/// The steps that hold a tolerance. The mixed term 2 n h k is at most n h^2 + n k^2; h and k take half each.
 Grid grid_of(vtkIdType body, const Ellipsoid& shape, double tolerance) {
-    const double n = std::max(shape.axes.x, shape.axes.z), m = std::max(n, shape.axes.y);
-    const double most_h = std::sqrt(4 * tolerance / (m + n)), most_k = std::sqrt(2 * tolerance / n);
-    const double rows = std::max(std::ceil(kPi / most_h), 1.0 * kLeastRows),
-                 columns = std::max(std::ceil(2 * kPi / most_k), 1.0 * kLeastColumns);
-    if (!(rows <= kMostSteps && columns <= kMostSteps))
+    const auto steps = anamorph::figure::surface_steps(shape.axes, tolerance);
+    if (!steps)
         throw Error("Tolerance", anamorph::shortest(tolerance),
                     "is too small for ellipsoid " + std::to_string(body) + ", which may have at most " +
-                        anamorph::shortest(kMostSteps) + " steps around it");
-    Grid grid{body, shape, static_cast<int>(rows), static_cast<int>(columns)};
-    const double h = kPi / rows, k = 2 * kPi / columns;
-    grid.bound = (m * h * h + 2 * n * h * k + n * k * k) / 8;
-    return grid;
+                        std::to_string(anamorph::figure::kMostSurfaceSteps) + " steps around it");
+    return {body, shape, steps->rows, steps->columns, steps->bound};
 }
 
 /// The grids of all bodies, one after the other.

@@ -17,8 +17,11 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/figure/body/surface_steps.h"
 #include "anamorph/figure/body/window_fit.h"
 #include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 #include "anamorph/version.h"
 
 namespace anamorph::figure {
@@ -26,21 +29,23 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kRows = 24, kColumns = 48;
+constexpr SurfaceSteps kUsualSteps{24, 48};
+constexpr long long kMostTriangles = 1LL << 22;  ///< of all bodies
 constexpr double kMetresPerUnit = 1.0 / 500;
 
 /// A sphere of radius 1 about the origin; its points are their normals. Corners of triangles go round
 /// against the clock as seen from outside, in right-handed space.
 struct UnitSphere {
     std::vector<glm::dvec3> points;
-    std::vector<std::array<std::uint16_t, 3>> triangles;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
 
-    UnitSphere() {
+    explicit UnitSphere(const SurfaceSteps& steps) {
+        const int rows = steps.rows, columns = steps.columns;
         points.push_back({0, 1, 0});
-        for (int row = 1; row < kRows; ++row)
-            for (int column = 0; column < kColumns; ++column) {
-                const double polar = std::numbers::pi * row / kRows,
-                             turn = 2 * std::numbers::pi * column / kColumns;
+        for (int row = 1; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
+                const double polar = std::numbers::pi * row / rows,
+                             turn = 2 * std::numbers::pi * column / columns;
                 points.push_back(
                     {std::sin(polar) * std::cos(turn), std::cos(polar), std::sin(polar) * std::sin(turn)});
             }
@@ -48,19 +53,39 @@ struct UnitSphere {
         const int last = static_cast<int>(points.size()) - 1;
         const auto at = [&](int row, int column) {
             if (row == 0) return 0;
-            return row == kRows ? last : 1 + (row - 1) * kColumns + column % kColumns;
+            return row == rows ? last : 1 + (row - 1) * columns + column % columns;
         };
         const auto add = [&](int a, int b, int c) {
-            triangles.push_back({static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b),
-                                 static_cast<std::uint16_t>(c)});
+            triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                                 static_cast<std::uint32_t>(c)});
         };
-        for (int row = 0; row < kRows; ++row)
-            for (int column = 0; column < kColumns; ++column) {
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
                 if (row > 0) add(at(row, column), at(row, column + 1), at(row + 1, column));
-                if (row < kRows - 1) add(at(row, column + 1), at(row + 1, column + 1), at(row + 1, column));
+                if (row < rows - 1) add(at(row, column + 1), at(row + 1, column + 1), at(row + 1, column));
             }
     }
 };
+
+/// The steps of each body, of the given half-axes.
+std::vector<SurfaceSteps> steps_of(const std::vector<Body>& bodies, const std::vector<glm::dvec3>& axes,
+                                   std::optional<double> tolerance) {
+    if (!tolerance) return std::vector<SurfaceSteps>(bodies.size(), kUsualSteps);
+    kSurfaceTolRow.check(*tolerance, "tol");
+    std::vector<SurfaceSteps> all;
+    long long triangles = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const auto steps = surface_steps(axes[i], *tolerance);
+        if (steps) triangles += 2LL * (steps->rows - 1) * steps->columns;
+        if (!steps || triangles > kMostTriangles)
+            throw Error("tol", shortest(*tolerance),
+                        "is too small for " + text_file::excerpt(bodies[i].name) + ": must take at most " +
+                            std::to_string(kMostSurfaceSteps) + " steps around a body and " +
+                            std::to_string(kMostTriangles) + " triangles in all");
+        all.push_back(*steps);
+    }
+    return all;
+}
 
 float as_float(double value) {
     const auto narrow = static_cast<float>(value);
@@ -93,10 +118,18 @@ class Buffer {
             }
         return add(accessor);
     }
-    int add_indices(const std::vector<std::array<std::uint16_t, 3>>& triangles) {
-        constexpr int kShort = 5123, kElementArray = 34963;
-        Json accessor = view(triangles.data(), triangles.size() * sizeof(triangles[0]), kElementArray);
-        accessor["componentType"] = kShort;
+    /// Of so many points; in two bytes each where these hold them.
+    int add_indices(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::size_t points) {
+        constexpr int kShort = 5123, kInt = 5125, kElementArray = 34963;
+        const bool fit_short = points <= 0xffff;
+        std::vector<std::uint16_t> narrow;
+        for (const auto& triangle : triangles)
+            for (const std::uint32_t corner : triangle)
+                if (fit_short) narrow.push_back(static_cast<std::uint16_t>(corner));
+        Json accessor = fit_short
+                            ? view(narrow.data(), narrow.size() * sizeof(narrow[0]), kElementArray)
+                            : view(triangles.data(), triangles.size() * sizeof(triangles[0]), kElementArray);
+        accessor["componentType"] = fit_short ? kShort : kInt;
         accessor["count"] = 3 * triangles.size();
         accessor["type"] = "SCALAR";
         return add(accessor);
@@ -157,16 +190,12 @@ double linear_of_srgb(double c) {
 /// The parts of a glTF file.
 class Scene {
   public:
-    Scene(std::span<const FigureFrame> frames, double frames_per_second) : m_frames(frames) {
+    Scene(std::span<const FigureFrame> frames, double frames_per_second, std::optional<double> tolerance)
+        : m_frames(frames), m_steps(steps_of(frames[0].bodies, largest_axes(frames), tolerance)) {
         std::vector<float> times;
         for (std::size_t i = 0; i < frames.size(); ++i)
             times.push_back(as_float(static_cast<double>(i) / frames_per_second));
-        const UnitSphere sphere;
-        std::vector<float> points;
-        for (const glm::dvec3& p : sphere.points) append(points, {p.x, p.y, p.z});
-        constexpr int kArray = 34962;
-        m_points = m_buffer.add_floats(points, 3, true, kArray);
-        m_triangles = m_buffer.add_indices(sphere.triangles);
+        for (const SurfaceSteps& steps : m_steps) add_sphere(steps);
         if (frames.size() > 1) m_times = m_buffer.add_floats(times, 1, true);
         add_figures();
         for (std::size_t body = 0; body < frames[0].bodies.size(); ++body) add_body(body);
@@ -222,7 +251,7 @@ class Scene {
         };
         const std::size_t node = m_nodes.size();
         m_nodes.push_back({{"name", body.name},
-                           {"mesh", mesh_of(body.color)},
+                           {"mesh", mesh_of(body.color, m_steps[index])},
                            {"translation", first(track.translation, 3)},
                            {"rotation", first(track.rotation, 4)},
                            {"scale", first(track.scale, 3)}});
@@ -244,8 +273,53 @@ class Scene {
                               {"interpolation", "LINEAR"}});
     }
 
-    /// The sphere in a color.
-    std::size_t mesh_of(const glm::dvec3& color) {
+    /// The largest half-axes of each body: whatever lies between frames has none longer.
+    static std::vector<glm::dvec3> largest_axes(std::span<const FigureFrame> frames) {
+        std::vector<glm::dvec3> axes(frames[0].bodies.size(), glm::dvec3(0.0));
+        for (const FigureFrame& frame : frames)
+            for (std::size_t i = 0; i < axes.size(); ++i)
+                axes[i] = glm::max(axes[i], frame.bodies[i].shape.axes);
+        return axes;
+    }
+
+    /// A sphere's accessors.
+    struct Sphere {
+        int rows = 0, columns = 0, points = 0, triangles = 0;
+    };
+    const Sphere* sphere_of(const SurfaceSteps& steps) const {
+        const auto found = std::find_if(m_spheres.begin(), m_spheres.end(), [&](const Sphere& s) {
+            return s.rows == steps.rows && s.columns == steps.columns;
+        });
+        return found == m_spheres.end() ? nullptr : &*found;
+    }
+    void add_sphere(const SurfaceSteps& steps) {
+        if (sphere_of(steps)) return;
+        const UnitSphere sphere(steps);
+        std::vector<float> points;
+        for (const glm::dvec3& p : sphere.points) append(points, {p.x, p.y, p.z});
+        constexpr int kArray = 34962;
+        const int point_accessor = m_buffer.add_floats(points, 3, true, kArray);
+        m_spheres.push_back({steps.rows, steps.columns, point_accessor,
+                             m_buffer.add_indices(sphere.triangles, sphere.points.size())});
+    }
+
+    /// The sphere of these steps in a color.
+    std::size_t mesh_of(const glm::dvec3& color, const SurfaceSteps& steps) {
+        const Sphere& sphere = *sphere_of(steps);
+        const MeshKey key{material_of(color), &sphere - m_spheres.data()};
+        const auto found = std::find(m_mesh_keys.begin(), m_mesh_keys.end(), key);
+        const auto index = static_cast<std::size_t>(found - m_mesh_keys.begin());
+        if (found != m_mesh_keys.end()) return index;
+        m_mesh_keys.push_back(key);
+        m_meshes.push_back(
+            {{"primitives",
+              Json::array({Json{{"attributes", {{"POSITION", sphere.points}, {"NORMAL", sphere.points}}},
+                                {"indices", sphere.triangles},
+                                {"material", key.first}}})}});
+        return index;
+    }
+
+    std::size_t material_of(const glm::dvec3& color) {
         const auto found = std::find(m_colors.begin(), m_colors.end(), color);
         const auto index = static_cast<std::size_t>(found - m_colors.begin());
         if (found != m_colors.end()) return index;
@@ -255,24 +329,27 @@ class Scene {
                                 {{"baseColorFactor", {part(0), part(1), part(2), 1.0}},
                                  {"metallicFactor", 0.0},
                                  {"roughnessFactor", 0.7}}}});
-        m_meshes.push_back(
-            {{"primitives", Json::array({Json{{"attributes", {{"POSITION", m_points}, {"NORMAL", m_points}}},
-                                              {"indices", m_triangles},
-                                              {"material", index}}})}});
         return index;
     }
 
+    /// The material and the sphere of a mesh.
+    using MeshKey = std::pair<std::size_t, std::ptrdiff_t>;
+
     std::span<const FigureFrame> m_frames;
+    std::vector<SurfaceSteps> m_steps;  ///< of the bodies
     Buffer m_buffer;
-    int m_points = 0, m_triangles = 0, m_times = 0;
+    int m_times = 0;
     std::vector<glm::dvec3> m_colors;
+    std::vector<Sphere> m_spheres;
+    std::vector<MeshKey> m_mesh_keys;
     Json m_roots = Json::array(), m_nodes = Json::array(), m_meshes = Json::array(),
          m_materials = Json::array(), m_channels = Json::array(), m_samplers = Json::array();
 };
 
 }  // namespace
 
-std::string glb_file(std::span<const FigureFrame> frames, double frames_per_second) {
+std::string glb_file(std::span<const FigureFrame> frames, double frames_per_second,
+                     std::optional<double> tolerance) {
     if (frames.empty() || frames[0].bodies.empty()) throw Error("there is no figure to write");
     for (const FigureFrame& frame : frames) {
         const bool same =
@@ -282,7 +359,7 @@ std::string glb_file(std::span<const FigureFrame> frames, double frames_per_seco
             throw Error("frame " + std::to_string(frame.number) + " has other bodies than frame " +
                         std::to_string(frames[0].number) + ": glTF must have the same in all");
     }
-    return Scene(frames, frames_per_second).file();
+    return Scene(frames, frames_per_second, tolerance).file();
 }
 
 namespace {
@@ -317,13 +394,21 @@ class Rows {
 
 }  // namespace
 
-std::string obj_file(const FigureFrame& frame) {
-    const UnitSphere sphere;
+std::string obj_file(const FigureFrame& frame, std::optional<double> tolerance) {
+    std::vector<glm::dvec3> axes;
+    for (const Body& body : frame.bodies) axes.push_back(body.shape.axes);
+    const std::vector<SurfaceSteps> steps = steps_of(frame.bodies, axes, tolerance);
+    std::optional<UnitSphere> made;  // the last, which the next body mostly is, too
+    SurfaceSteps made_of;
     std::string text =
         "# Anamorph " + std::string(version()) + ", frame " + std::to_string(frame.number) + "\n";
     Rows rows(text);
     std::size_t first = 1;
-    for (const Body& body : frame.bodies) {
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+        const Body& body = frame.bodies[i];
+        if (!made || steps[i].rows != made_of.rows || steps[i].columns != made_of.columns)
+            made.emplace(made_of = steps[i]);
+        const UnitSphere& sphere = *made;
         const Ellipsoid p = mirrored(body.shape);
         text += "o " + body.name + "\n";
         std::string color;
@@ -342,7 +427,7 @@ std::string obj_file(const FigureFrame& frame) {
         }
         for (const auto& triangle : sphere.triangles) {
             text += 'f';
-            for (const std::uint16_t corner : triangle) rows.add_corner(first + corner);
+            for (const std::uint32_t corner : triangle) rows.add_corner(first + corner);
             rows.end();
         }
         // As much for each of the others, whose corners have more digits.
