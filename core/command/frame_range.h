@@ -17,6 +17,9 @@ struct FrameRange {
     int first = 1, last = 1, step = 1;
 
     bool several() const { return all || last > first; }
+    bool has(int number) const {
+        return all || (number >= first && number <= last && (number - first) % step == 0);
+    }
     /// The number of frames; for `all` it asks the motion.
     int count(figure::Motion& motion) const;
     /// Calls body for the frames in order. Throws Error where one is not performed.

@@ -11,6 +11,7 @@
 #include <map>
 #include <thread>
 
+#include "anamorph/figure/files/ellipse_file.h"
 #include "anamorph/figure/files/frame_file.h"
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/figure/files/scene_file.h"
@@ -19,9 +20,13 @@
 #include "anamorph/figure/outline/drawing.h"
 #include "anamorph/figure/outline/fit.h"
 #include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 #include "anamorph/version.h"
 #include "film_writer.h"
 #include "frame_range.h"
+#include "input_file.h"
+#include "mrasel.h"
+#include "picture_bytes.h"
 #include "progress.h"
 #include "script_source.h"
 #include "texture_files.h"
@@ -36,6 +41,9 @@ constexpr NumberRow kThreadsRow{"threads", 0, 0, 1024, NumberRow::closed, true};
 constexpr NumberRow kSizeRow{"size", 500, 1, 16384};
 constexpr NumberRow kPerspectiveRow{"perspective", NAN, 1e-3, 1e9};
 constexpr NumberRow kFramesPerSecondRow{"fps", NAN, 0.01, 1000};
+constexpr NumberRow kSceneTolRow{"tol", NAN, 0, NumberRow::kNoEnd, NumberRow::above_least};
+constexpr NumberRow kPerturbationRow{"perturbation", 0, 0, 1};
+constexpr NumberRow kSeedRow{"seed", 0, 0, 1e9, NumberRow::closed, true};
 constexpr NumberRow kColumnsRow{"width", 80, 1, 4096, NumberRow::closed, true};
 
 /// What the command line says.
@@ -48,6 +56,7 @@ struct Settings {
     bool fit = false;                 ///< the view
     FigureLook look;                  ///< of films
     double frames_per_second = 0;     ///< 0: the motion's own
+    double scene_tol = 0;             ///< 0: spheres of the usual cells
     int threads = static_cast<int>(kThreadsRow.standard), columns = static_cast<int>(kColumnsRow.standard);
     Characters characters = Characters::braille;
 };
@@ -96,6 +105,12 @@ class Command {
         add_scene("obj", "Write a frame's figures as Wavefront OBJ", "; by default the first of those");
         add_scene("vtp", "Write a frame's figures as points of VTK's XML (.vtp)",
                   "; by default the first of those");
+        add_ellipses("hide", "Write outlines and their hidden arcs as HIDE does (.2)");
+        add_ellipses("visib", "Write whole outlines as VISIB does (.2)");
+        add_plotel();
+        add_mrasel();
+        add_mtexture();
+        add_showmap();
         add_stats();
         add_language();
     }
@@ -269,12 +284,153 @@ class Command {
         sub->add_option("--lighting", m_settings.look.light.lighting, "How bodies are shaded")
             ->transform(CLI::CheckedTransformer(lightings))
             ->option_text("rasel|lambert|blinn [rasel]");
+        add_perturbation(sub);
+    }
+
+    void add_perturbation(CLI::App* sub) {
+        add_number(sub, "--perturbation", m_settings.look.perturbation, kPerturbationRow,
+                   "The most by which the light of a pixel is off at random, against contours");
+        add_number(sub, "--seed", m_settings.look.seed, kSeedRow, "Seed of these random numbers");
     }
 
     void add_scene(const std::string& format, const char* what, const char* standard) {
         CLI::App* sub = add_subcommand(format.c_str(), what, [this, format] { return write_scene(format); });
         add_output(sub, "Where to; - is the standard output");
         add_frame_range(sub, standard);
+        if (format != "vtp")
+            add_number(sub, "--tol", m_settings.scene_tol, kSceneTolRow,
+                       "Maximum distance of a body's triangles from its ellipsoid, in units of the window of "
+                       "1000; by "
+                       "default each has 2,208, within 0.5 % of its half-axes");
+    }
+
+    void add_ellipses(const std::string& format, const char* what) {
+        CLI::App* sub = add_subcommand(format.c_str(), what, [this, format] {
+            std::unique_ptr<Motion> motion;
+            const FrameRange range = range_or("all");
+            Progress progress([&] { return count_of(range, *motion); });
+            motion = perform(progress);
+            OutputFile file(m_settings.output);
+            const ParallelFor parallel_for = threads_for(thread_count());
+            range.for_each(*motion, [&](const FigureFrame& frame) {
+                file.write(ellipse_text(ellipses_of(frame, format == "hide", parallel_for)));
+                progress.advance();
+            });
+            file.close();
+            return 0;
+        });
+        add_output(sub, "Where to; - is the standard output");
+        add_frame_range(sub, " (the default)");
+        add_number(sub, "--threads", m_settings.threads, kThreadsRow,
+                   "Threads; 0 is as many as there are processors");
+    }
+
+    void add_plotel() {
+        CLI::App* sub =
+            m_app.add_subcommand("plotel", "Draw outlines as HIDE and VISIB write them (.2) as SVG");
+        sub->add_option("FILE", m_settings.source.path, "Outlines; - is the standard input")->required();
+        add_output(
+            sub,
+            "Where to; - is the standard output. Of several frames: %04d or #### stands for the number, "
+            "which else goes before the ending");
+        sub->add_option("--frame", m_settings.frames, "Which: N, N-M, N-MxSTEP, or all; by default the first")
+            ->check(frame_range())
+            ->option_text("RANGE");
+        add_number(sub, "--size", m_settings.size, kSizeRow, "Pixels that the window of 1000 units is");
+        add_number(sub, "--tol", m_settings.drawing.tol, kDrawingTolRow, "Maximum chord error, in pixels");
+        sub->callback([this] { m_run = [this] { return plot(); }; });
+    }
+
+    int plot() const {
+        const std::string& path = m_settings.source.path;
+        const bool standard = path == "-";
+        const std::optional<std::string> text =
+            standard ? read_all(std::cin, "the standard input", text_file::kMostBytes)
+                     : read_file(path, true, text_file::kMostBytes);
+        if (!text) throw Error("cannot read " + path);
+        const std::vector<EllipseFrame> frames = parse_ellipses(*text, standard ? "stdin" : path);
+        if (frames.empty()) throw Error(path + " has no frame");
+        // The first, whatever its number is.
+        const int first = frames[0].number;
+        const FrameRange range =
+            m_settings.frames.empty() ? FrameRange{false, first, first} : range_or("all");
+        const std::unique_ptr<DrawingWriter> out = writer("svg", range.several());
+        bool any = false;
+        for (const EllipseFrame& frame : frames) {
+            if (!range.has(frame.number)) continue;
+            out->add(plotted(frame, m_settings.size, m_settings.drawing.tol));
+            any = true;
+        }
+        if (!any) throw Error("--frame", m_settings.frames, "must be a frame that " + path + " has");
+        out->finish();
+        return 0;
+    }
+
+    void add_picture_output(CLI::App* sub) {
+        sub->add_option("-o,--output", m_picture.name, "Where to; - is the standard output")
+            ->option_text("FILE [-]");
+        sub->add_flag("--raw", m_picture.raw,
+                      "Without the header of PPM: triples of bytes, row by row from the upper left");
+    }
+
+    void add_mrasel() {
+        CLI::App* sub = m_app.add_subcommand(
+            "mrasel",
+            "Draw a frame of MRASEL from the standard input, 512 x 512 pixels, with the maps in this folder");
+        add_picture_output(sub);
+        sub->add_flag_callback(
+            "--linear", [this] { m_settings.look.mapping = BodyMapping::linear; },
+            "The linear mapping: stripes stay straight");
+        static const std::map<std::string, TextureAverage> averages{
+            {"mrasel", TextureAverage::mrasel},
+            {"trilinear", TextureAverage::trilinear},
+            {"summed_area", TextureAverage::summed_area},
+            {"antialias", TextureAverage::footprint}};
+        sub->add_option("--filter", m_average, "How maps are averaged")
+            ->transform(CLI::CheckedTransformer(averages))
+            ->option_text("mrasel|trilinear|summed_area|antialias [mrasel]");
+        add_perturbation(sub);
+        add_number(sub, "--threads", m_settings.threads, kThreadsRow,
+                   "Threads; 0 is as many as there are processors");
+        sub->callback([this] {
+            m_run = [this] {
+                FigureLook look = m_settings.look;
+                if (look.mapping != BodyMapping::linear) look.mapping = BodyMapping::mirrored;
+                look.average = m_average;
+                draw_mrasel(std::cin, look, m_picture, threads_for(thread_count()),
+                            [](const std::string& what) {
+                                std::cerr << "anamorph-figure: " << one_line(what) << "\n";
+                            });
+                return 0;
+            };
+        });
+    }
+
+    void add_mtexture() {
+        CLI::App* sub = m_app.add_subcommand("mtexture",
+                                             "Make MRASEL's maps NAME.512, NAME.256, ..., NAME.1 of 512 x "
+                                             "512 triples of bytes, red, green and "
+                                             "blue, from the standard input");
+        sub->add_option("NAME", m_settings.word, "The maps' name")->required();
+        sub->callback([this] {
+            m_run = [this] {
+                make_maps(std::cin, m_settings.word);
+                return 0;
+            };
+        });
+    }
+
+    void add_showmap() {
+        CLI::App* sub = m_app.add_subcommand(
+            "showmap", "Show the maps NAME.256, ..., NAME.1 in one picture of 512 x 256 pixels");
+        sub->add_option("NAME", m_settings.word, "The maps' name")->required();
+        add_picture_output(sub);
+        sub->callback([this] {
+            m_run = [this] {
+                show_maps(m_settings.word, m_picture);
+                return 0;
+            };
+        });
     }
 
     void add_stats() {
@@ -445,19 +601,7 @@ class Command {
         FigureLook look = m_settings.look;
         if (frame.bands.empty()) look.background = glm::dvec3(1.0);
         const FigurePicture picture(frame, view, {side, side}, look, parallel_for);
-        const int channels = channels_of(look.style);
-        std::vector<float> pixels(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
-                                  static_cast<std::size_t>(channels));
-        picture.draw({0, 0, side, side},
-                     packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, side, side,
-                                 channels),
-                     parallel_for, textures.sources());
-        FilmFrame film{frame.number, {}};
-        for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(channels))
-            for (std::size_t c = 0; c < 3; ++c)
-                film.pixels.push_back(
-                    static_cast<std::uint8_t>(std::lround(std::clamp(pixels[i + c], 0.0f, 1.0f) * 255)));
-        return film;
+        return {frame.number, picture_bytes(picture, look, {side, side}, textures.sources(), parallel_for)};
     }
 
     int write_film() {
@@ -503,9 +647,11 @@ class Command {
         });
         if (frames.empty()) throw Error(m_settings.source.path + " shows no frame");
         OutputFile file(m_settings.output);
-        file.write(format == "obj"   ? obj_file(frames[0])
+        std::optional<double> tolerance;
+        if (m_settings.scene_tol > 0) tolerance = m_settings.scene_tol;
+        file.write(format == "obj"   ? obj_file(frames[0], tolerance)
                    : format == "vtp" ? vtp_file(frames[0])
-                                     : glb_file(frames, motion->frames_per_second()));
+                                     : glb_file(frames, motion->frames_per_second(), tolerance));
         file.close();
         return 0;
     }
@@ -555,6 +701,8 @@ class Command {
     CLI::App m_app{"Scripts of NUDES, the animation language for figures of ellipsoids (Chapman 1986)",
                    "anamorph-figure"};
     Settings m_settings;
+    PictureOutput m_picture;                            ///< of mrasel and showmap
+    TextureAverage m_average = TextureAverage::mrasel;  ///< of mrasel
     std::function<int()> m_run;
 };
 

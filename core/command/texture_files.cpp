@@ -11,6 +11,7 @@
 #include <iterator>
 
 #include "anamorph/error.h"
+#include "input_file.h"
 
 #ifdef ANAMORPH_HAVE_CAIRO
 #include <cairo.h>
@@ -107,14 +108,26 @@ std::string file_beside(const std::string& script, const std::string& name) {
 struct TextureFiles::Texture {
     explicit Texture(Pixels read)
         : pixels(std::move(read)),
-          base(packed_view(reinterpret_cast<const std::byte*>(pixels.values.data()), PixelType::float32,
-                           pixels.width, pixels.height, 4)),
-          pyramid(base) {}
+          base(std::make_unique<MemorySource>(
+              packed_view(reinterpret_cast<const std::byte*>(pixels.values.data()), PixelType::float32,
+                          pixels.width, pixels.height, 4))),
+          pyramid(*base) {}
+    explicit Texture(figure::MraselMaps maps)
+        : base(std::make_unique<figure::MraselMaps>(std::move(maps))), pyramid(*base) {}
 
     Pixels pixels;
-    MemorySource base;
+    std::unique_ptr<const Source> base;
     Pyramid pyramid;
 };
+
+figure::MraselMaps read_maps(const std::string& name) {
+    return figure::MraselMaps::read_from(name, [](const std::string& file) {
+        const std::optional<std::string> bytes =
+            read_file(file, false, figure::bytes_of_map(figure::kMraselSide));
+        if (!bytes) throw Error("cannot read " + file);
+        return *bytes;
+    });
+}
 
 void TextureFiles::Delete::operator()(Texture* texture) const {
     delete texture;
@@ -124,13 +137,17 @@ TextureFiles::TextureFiles(const std::string& script, const std::vector<std::str
                            const std::function<void(const std::string& what)>& warn) {
     for (const std::string& name : names) {
         m_sources.push_back(nullptr);
-        const std::string file = file_beside(script, name);
+        const std::string maps = (fs::path(script).parent_path() / name).string();
+        std::error_code code;
+        const bool are_maps = fs::is_regular_file(figure::mrasel_map_file(maps, figure::kMraselSide), code);
+        const std::string file = are_maps ? maps : file_beside(script, name);
         if (file.empty()) {
             warn("the texture " + name + " is not there: bodies have their own color");
             continue;
         }
         try {
-            m_textures.emplace_back(new Texture(read_picture(file)));
+            m_textures.emplace_back(are_maps ? new Texture(read_maps(maps))
+                                             : new Texture(read_picture(file)));
             m_sources.back() = &m_textures.back()->pyramid;
         } catch (const Error& error) {
             warn("the texture " + file + " cannot be read: " + error.what());

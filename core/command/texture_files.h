@@ -7,15 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/figure/image/mrasel_maps.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/source.h"
 
 namespace anamorph::command {
 
+/// Reads the maps NAME.512, NAME.256, ..., NAME.1. Throws Error.
+figure::MraselMaps read_maps(const std::string& name);
+
 /// Textures in memory, with their pyramids.
 class TextureFiles {
   public:
-    /// Those of `names`: a file of that name in the folder of `script`, or with the ending .png or .ppm.
+    /// Those of `names`: in the folder of `script` the maps that MTEXTURE makes of a name, or else a file of that name, or with
+    /// the ending .png or .ppm.
     /// warn(what) hears of each that is not there or cannot be read.
     TextureFiles(const std::string& script, const std::vector<std::string>& names,
                  const std::function<void(const std::string& what)>& warn);

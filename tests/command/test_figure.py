@@ -462,7 +462,7 @@ class Scenes(Case):
         accessor = scene["accessors"][accessor]
         view = scene["bufferViews"][accessor["bufferView"]]
         width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
-        kind = {5126: "f", 5123: "H"}[accessor["componentType"]]
+        kind = {5126: "f", 5123: "H", 5125: "I"}[accessor["componentType"]]
         flat = struct.unpack_from("<%d%s" % (width * accessor["count"], kind), binary, view["byteOffset"])
         rows = [flat[i:i + width] for i in range(0, len(flat), width)]
         for c, (low, high) in enumerate(zip(accessor.get("min", ()), accessor.get("max", ()))):
@@ -528,6 +528,75 @@ class Scenes(Case):
             corners = [int(c.split("//")[0]) for r in rows if r[0] == "f" for c in r[1:]]
             self.assertEqual((min(corners), max(corners)), (first, first + len(points) - 1))
             first += len(points)
+
+    @staticmethod
+    def off(axes, point):
+        """How far a point is from an ellipsoid about the origin: at its nearest point a^2 p / (a^2 + t), by bisection for t."""
+        def value(t):
+            return sum((a * p / (a * a + t)) ** 2 for a, p in zip(axes, point)) - 1
+        low, high = -min(axes) ** 2 * (1 - 1e-12), sum(a * abs(p) for a, p in zip(axes, point)) + 1
+        for _ in range(200):
+            t = .5 * (low + high)
+            low, high = (t, high) if value(t) > 0 else (low, t)
+        return math.dist(point, [a * a * p / (a * a + t) for a, p in zip(axes, point)])
+
+    def test_a_tolerance_decides_the_triangles(self):
+        shapes = (("ball", (100, 100, 100), (500, 500, 200)), ("limb", (40, 200, 90), (600, 500, 800)), ("dot", (2, 2, 2), (9, 9, 9)))
+        counts = {}
+        for tol in (0.1, 1, 5, None):
+            options = () if tol is None else ("--tol", str(tol))
+            text = self.output("obj", "-", *options, text=scene(*shapes)).decode()
+            points, counts[tol] = [], []
+            for part, (name, axes, center) in zip(text.split("\no ")[1:], shapes):
+                rows = [line.split() for line in part.splitlines()]
+                points += [[float(v) for v in r[1:4]] for r in rows if r[0] == "v"]
+                triangles = [[points[int(c.split("//")[0]) - 1] for c in r[1:]] for r in rows if r[0] == "f"]
+                counts[tol].append(len(triangles))
+                for triangle in triangles[::max(1, len(triangles) // 400)]:
+                    for weights in ((1 / 3, 1 / 3, 1 / 3), (.5, .5, 0), (0, .5, .5), (.5, 0, .5), (1, 0, 0)):
+                        at = [sum(w * corner[k] for w, corner in zip(weights, triangle)) - (center[k] if k < 2 else -center[k])
+                              for k in range(3)]
+                        most = {1: 1e-9}.get(max(weights), tol if tol else .005 * max(axes))
+                        self.assertLessEqual(self.off(axes, at), most * (1 + 1e-9), (name, tol, weights))
+            # Without it, 24 x 48 cells; with it, small bodies have fewer triangles than large ones.
+        self.assertEqual(counts[None], [2208] * 3)
+        for k in range(2):
+            self.assertGreater(counts[.1][k], counts[1][k])
+            self.assertGreater(counts[1][k], counts[5][k])
+        self.assertEqual(counts[5][2], 2 * 3 * 6)
+        self.assertEqual(counts[5][0], 2 * 9 * 20)
+
+    def test_the_tolerance_of_gltf_holds_in_all_frames(self):
+        script = ("figure f 2 a b\nellipsoid a 10 10 10\nellipsoid b 10 10 10\njoint j a 0 10 0 b 0 -10 0\n"
+                  "linear 0 4 groell a 10 10 10\nrepeat 0 1 colour a 255 0 0\nrepeat 0 1 colour b 255 0 0\nstop\n")
+        loose, _ = self.glb("-", text=script)
+        self.assertEqual(len(loose["meshes"]), 1)
+        self.assertEqual(loose["accessors"][1]["count"], 3 * 2208)
+        scene_, binary = self.glb("-", "--tol", "0.5", text=script)
+        self.assertEqual((len(scene_["meshes"]), len(scene_["materials"])), (2, 1))
+        nodes = {node["name"]: node for node in scene_["nodes"]}
+        for name, radius in (("a", 100), ("b", 10)):
+            primitive = scene_["meshes"][nodes[name]["mesh"]]["primitives"][0]
+            points = self.numbers(scene_, binary, primitive["attributes"]["POSITION"])
+            corners = [i for i, in self.numbers(scene_, binary, primitive["indices"])]
+            worst = 0
+            for k in range(0, len(corners), 3):
+                middle = [sum(points[c][i] for c in corners[k:k + 3]) / 3 for i in range(3)]
+                worst = max(worst, radius * (1 - math.hypot(*middle)))
+            self.assertLessEqual(worst, .5)
+            self.assertGreater(worst, .1)
+        # More points than two bytes count.
+        fine, binary = self.glb("-", "--tol", "0.003", text=script)
+        kinds = {fine["accessors"][mesh["primitives"][0]["indices"]]["componentType"] for mesh in fine["meshes"]}
+        self.assertEqual(kinds, {5123, 5125})
+
+    def test_a_tolerance_that_is_none(self):
+        for format in ("obj", "gltf"):
+            for value in ("0", "-1", "nan", "inf", "x"):
+                self.assertIn("must be a number above 0", self.error(format, "-", "--tol", value, text=NEAR_AND_FAR))
+            self.assertIn("tol=1e-09: is too small for near: must take at most 4096 steps around a body",
+                          self.error(format, "-", "--tol", "1e-9", text=NEAR_AND_FAR))
+        self.assertIn("--tol", self.error("vtp", "-", "--tol", "1", text=NEAR_AND_FAR))
 
     def test_other_programs_read_them(self):
         if not shutil.which("assimp"):

@@ -33,6 +33,7 @@ class Texts final : public SideFileReader {
         if (found == files.end()) throw Error("there is no file " + name);
         return found->second;
     }
+    bool exists(const std::string& name) const override { return files.contains(name); }
     std::unique_ptr<SideImage> image(const std::string&, const std::string& name) const override {
         throw Error("there is no image " + name);
     }
@@ -287,6 +288,75 @@ TEST(FigureOperation, MipsShowThePyramid) {
     }
     EXPECT_EQ(pictures->picture(1, 0)->size, (Size{2, 2}));
     EXPECT_THAT(error_of({{"output", "mips"}}), HasSubstr("has no texture"));
+}
+
+TEST(FigureOperation, MapsOfMraselAreTextures) {
+    // The maps of `map` beside the script, left half red, right half blue; `other` is a picture of the host's.
+    Texts texts;
+    texts.files["a/in.mrasel"] = "2 0 0\n90 90 90 1280 2560 0 0 0 0 map\n90 90 90 3840 2560 0 0 0 0 other\n";
+    for (int side = 512; side >= 1; side /= 2) {
+        std::string& map = texts.files["a/map." + std::to_string(side)];
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x)
+                map += 2 * x < side ? std::string("\xff\0\0", 3) : std::string("\0\0\xff", 3);
+    }
+    const Operation& operation = *find_operation("figure");
+    const auto opened = [&](const std::vector<Assignment>& more) {
+        ParameterValues values(*operation.parameters);
+        values.assign({{"size", "64x64"},
+                       {"mapping", "mirrored"},
+                       {"filter", "bilinear"},
+                       {"lighting", "lambert"},
+                       {"ambient", "1"}});
+        values.assign(more);
+        SideFiles files = {{"script", {"a/in.mrasel", ""}}};
+        const LinkedFiles linked = operation.linked(values, files, texts);
+        EXPECT_EQ(linked.size(), 11u);
+        for (const LinkedFile& file : linked) {
+            files[file.key] = {file.name, "", file.image};
+            EXPECT_EQ(file.image, file.name == "a/other") << file.name;
+        }
+        return operation.read({values, {}, files, texts, {"texture/other"}});
+    };
+    // The host's only source is white: the second body's.
+    const std::vector<float> white(12, 1.0f);
+    const MemorySource host(
+        packed_view(reinterpret_cast<const std::byte*>(white.data()), PixelType::float32, 2, 2, 3));
+    std::vector<float> pixels(std::size_t{64} * 64 * 4);
+    const Box box = {0, 0, 64, 64};
+    opened({{"style", "textured"}})
+        ->picture(0, 0)
+        ->solve()
+        ->draw({&host}, box,
+               packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 64, 64, 4),
+               serial_for);
+    const auto at = [&](int x, int y) {
+        const float* p = &pixels[static_cast<std::size_t>(4 * (64 * y + x))];
+        return std::vector<float>(p, p + 4);
+    };
+    EXPECT_EQ(at(11, 32), (std::vector<float>{1, 0, 0, 1}));
+    EXPECT_EQ(at(21, 32), (std::vector<float>{0, 0, 1, 1}));
+    EXPECT_EQ(at(48, 32), (std::vector<float>{1, 1, 1, 1}));
+    // As a pyramid, too: level 0 has 512 texels, and red at the upper right.
+    const auto mips = opened({{"output", "mips"}});
+    ASSERT_EQ(mips->frames(), 2);
+    const PictureRequest first = *mips->picture(0, 0);
+    EXPECT_EQ(first.size, (Size{1024, 1024}));
+    const Box part = {512, 0, 1024, 1};
+    std::vector<float> row(512);
+    first.solve()->draw({nullptr}, part,
+                        packed_view(reinterpret_cast<std::byte*>(row.data()), PixelType::float32, 512, 1, 1),
+                        serial_for);
+    EXPECT_EQ(row[255], 1);
+    EXPECT_EQ(row[256], 0);
+    // A map that has another size is named.
+    texts.files["a/map.64"] += "x";
+    try {
+        opened({{"style", "textured"}});
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_THAT(e.what(), HasSubstr("a/map.64: has 12289 bytes: must have 12288"));
+    }
 }
 
 }  // namespace

@@ -101,6 +101,8 @@ def run_commands(folder):
     (folder / "boxing.bvh").write_text(MOTION)
     ramp = [value for y in range(16) for x in range(16) for value in (x / 16, y / 16, 0)]
     (folder / "picture.pfm").write_bytes(b"PF\n16 16\n-1\n" + struct.pack("<768f", *ramp))
+    (folder / "face.rgb").write_bytes(bytes(range(256)) * (3 * 1024))
+    (folder / "inframe").write_text("1 0 1\n511 0 0 90\n100 150 100 2560 2560 0 0 0 0 face\n")
     blocks.write_files("command", folder)
     lines = blocks.lines_of("command")
     assert len(lines) > 15, lines

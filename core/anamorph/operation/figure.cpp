@@ -9,9 +9,11 @@
 #include "anamorph/figure/body/rotation.h"
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/figure/image/figure_picture.h"
+#include "anamorph/figure/image/mrasel_maps.h"
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script.h"
 #include "anamorph/figure/outline/fit.h"
+#include "anamorph/image/pyramid.h"
 #include "anamorph/operation/figure_mips.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/read_once.h"
@@ -121,6 +123,11 @@ ParameterTable style_rows() {
         number("ambient", "", "0.3", 0, 1, "the share of light that comes from everywhere"),
         number("specular", "", "0.3", 0, 1, "of blinn: how strong highlights are"),
         number("shininess", "", "30", 0, 10000, "of blinn: how narrow they are"),
+        number(
+            "perturbation", "", "0", 0, 1,
+            "of styles shaded and textured: the most by which the light of a pixel is off at random, against "
+            "contours where few intensities are shown; of n levels 0.5/(n-1) is half a step"),
+        whole("seed", "", "0", 0, 1'000'000'000, "of the random numbers of perturbation"),
     };
 }
 
@@ -236,6 +243,37 @@ bool is_textured(const ParameterValues& values) {
 }
 
 const char* const kTextureKey = "texture/";
+const char* const kMapKey = "map/";
+
+/// Adds the files of a texture: the maps that MTEXTURE makes of its name, or else a picture.
+void add_texture(LinkedFiles& linked, const std::string& script, const std::string& name,
+                 const SideFileReader& reader) {
+    if (!reader.exists(figure::mrasel_map_file(beside(script, name), figure::kMraselSide))) {
+        linked.push_back({kTextureKey + name, picture_beside(script, name, reader), true});
+        return;
+    }
+    for (int level = 0; level < figure::kMraselMaps; ++level) {
+        const std::string file = figure::mrasel_map_file(name, figure::MraselMaps::side(level));
+        linked.push_back({kMapKey + file, beside(script, file)});
+    }
+}
+
+/// Maps of MRASEL, and a table of their sums where it is asked for.
+struct MapTexture {
+    explicit MapTexture(figure::MraselMaps read) : maps(std::move(read)) {}
+    figure::MraselMaps maps;
+    Pyramid pyramid{maps};
+};
+
+/// The maps that add_texture() found of a name; null where there are none.
+std::shared_ptr<const Source> maps_of(const std::string& name, const OperationInput& input) {
+    const auto first = input.files.find(kMapKey + figure::mrasel_map_file(name, figure::kMraselSide));
+    if (first == input.files.end()) return nullptr;
+    const std::string beside = first->second.name.substr(0, first->second.name.rfind('.'));
+    const auto maps = std::make_shared<MapTexture>(figure::MraselMaps::read_from(
+        beside, [&](const std::string& file) { return input.reader.text(file); }));
+    return {maps, &maps->pyramid};
+}
 
 /// What scripts include, and, where they are drawn, their textures in the order of the program, and the backdrop.
 LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
@@ -244,8 +282,7 @@ LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
     const SideFile& file = script_of(files);
     const auto add_textures = [&](const std::vector<std::string>& names) {
         if (!is_textured(values)) return;
-        for (const std::string& name : names)
-            linked.push_back({kTextureKey + name, picture_beside(file.name, name, reader), true});
+        for (const std::string& name : names) add_texture(linked, file.name, name, reader);
     };
     if (!figure::is_motion_file(file.name))
         add_textures(read_script(values, files, reader, [&](const std::string& included) {
@@ -327,7 +364,8 @@ struct FigureRequest {
     std::optional<glm::dvec3> camera, place;
     double zoom = 1, eye_distance = HUGE_VAL;
     bool fit = false;
-    std::string missing;  ///< textures
+    std::string missing;                              ///< textures
+    std::vector<std::shared_ptr<const Source>> maps;  ///< of the textures, null where the host has a picture
 
     /// `extent`: that the view is fitted to, where it is.
     figure::View view_of(const figure::FigureFrame& frame, const figure::SeenExtent& extent,
@@ -391,6 +429,8 @@ FigureRequest read_request(const ParameterValues& values) {
     look.style = rows::chosen<figure::FigureStyle>(values, "style");
     look.light = read_light(values);
     look.antialias = values.toggle("antialias");
+    look.perturbation = values.number("perturbation");
+    look.seed = values.whole("seed");
     read_background(values, look);
     look.mapping = rows::chosen<figure::BodyMapping>(values, "mapping");
     read_filter(values, look);
@@ -408,8 +448,9 @@ FigureRequest read_request(const ParameterValues& values) {
 
 class SolvedFigure final : public SolvedPicture {
   public:
-    SolvedFigure(figure::FigurePicture picture, figure::FigureStyle style)
-        : m_picture(std::move(picture)), m_style(style) {}
+    SolvedFigure(figure::FigurePicture picture, figure::FigureStyle style,
+                 std::vector<std::shared_ptr<const Source>> maps)
+        : m_picture(std::move(picture)), m_style(style), m_maps(std::move(maps)) {}
 
     /// Rays meet the bodies themselves; only curved lines are made of chords.
     Attributes reached(const ParallelFor&) const override {
@@ -419,13 +460,20 @@ class SolvedFigure final : public SolvedPicture {
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
-        m_picture.draw(box, view, parallel_for, sources);
+        // Each texture's maps, or the next of the host's pictures, the last of which is the backdrop.
+        std::vector<const Source*> all;
+        auto next = sources.begin();
+        for (const auto& maps : m_maps)
+            all.push_back(maps ? maps.get() : next == sources.end() ? nullptr : *next++);
+        all.insert(all.end(), next, sources.end());
+        m_picture.draw(box, view, parallel_for, all);
         return true;
     }
 
   private:
     figure::FigurePicture m_picture;
     figure::FigureStyle m_style;
+    std::vector<std::shared_ptr<const Source>> m_maps;
 };
 
 class Figures final : public Pictures {
@@ -462,7 +510,7 @@ class Figures final : public Pictures {
             figure::View view = r.view_of(scene, *extent, size);
             view.middle += glm::dvec2(r.look.overscan.width, r.look.overscan.height);
             return std::make_unique<SolvedFigure>(figure::FigurePicture(std::move(scene), view, all, r.look),
-                                                  r.look.style);
+                                                  r.look.style, r.maps);
         };
         return picture;
     }
@@ -508,8 +556,10 @@ std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Fil
     std::vector<MipTexture> textures;
     for (const std::string& name : film.images()) {
         const std::string key = kTextureKey + name;
-        MipTexture texture{name, {}};
-        if (std::find(input.missing.begin(), input.missing.end(), key) == input.missing.end()) {
+        MipTexture texture{name, {}, maps_of(name, input)};
+        if (texture.maps)
+            texture.size = texture.maps->size(0);
+        else if (std::find(input.missing.begin(), input.missing.end(), key) == input.missing.end()) {
             const Box shown = input.reader.image(key, input.files.at(key).name)->display();
             texture.size = Size{shown.width(), shown.height()};
         }
@@ -528,7 +578,10 @@ std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
     std::optional<int> frame;
     if (input.values.given("frame")) frame = input.values.whole("frame");
     const std::shared_ptr<const Film> film = read_film(input);
-    if (is_textured(input.values)) request.look.textures = film->images();
+    if (is_textured(input.values)) {
+        request.look.textures = film->images();
+        for (const std::string& name : film->images()) request.maps.push_back(maps_of(name, input));
+    }
     for (const std::string& key : input.missing)
         request.missing += (request.missing.empty() ? "" : ", ") + key.substr(key.find('/') + 1);
     if (are_mips(input.values)) return read_mips(input, *film, request.missing);

@@ -60,7 +60,9 @@ Texels half_of(const Texels& fine) {
 
 class SolvedMips final : public SolvedPicture {
   public:
-    SolvedMips(std::size_t index, const Size& texture) : m_index(index), m_texture(texture) {}
+    /// `index`: of the source; `maps` stand for it where they are given.
+    SolvedMips(std::size_t index, const Size& texture, std::shared_ptr<const Source> maps)
+        : m_index(index), m_texture(texture), m_maps(std::move(maps)) {}
 
     Attributes reached(const ParallelFor&) const override { return {}; }
 
@@ -68,7 +70,7 @@ class SolvedMips final : public SolvedPicture {
               const ParallelFor&) const override {
         for (int y = box.y0; y < box.y1; ++y)
             for (int x = box.x0; x < box.x1; ++x) store(view, box, x, y, 0);
-        const Source* source = m_index < sources.size() ? sources[m_index] : nullptr;
+        const Source* source = m_maps ? m_maps.get() : m_index < sources.size() ? sources[m_index] : nullptr;
         if (!source) return true;
         Size size = m_texture;
         std::optional<Texels> last;
@@ -126,6 +128,7 @@ class SolvedMips final : public SolvedPicture {
 
     std::size_t m_index;
     Size m_texture;
+    std::shared_ptr<const Source> m_maps;
 };
 
 class MipPictures final : public Pictures {
@@ -137,14 +140,19 @@ class MipPictures final : public Pictures {
 
     std::optional<PictureRequest> picture(int frame, int level) const override {
         if (level > 0) return {};
-        const auto i = static_cast<std::size_t>(frame);
-        const Size size = m_textures[i].size.value_or(Size{1, 1});
+        const MipTexture& texture = m_textures[static_cast<std::size_t>(frame)];
+        const auto index = static_cast<std::size_t>(
+            std::count_if(m_textures.begin(), m_textures.begin() + frame,
+                          [](const MipTexture& before) { return before.maps == nullptr; }));
+        const Size size = texture.size.value_or(Size{1, 1});
         PictureRequest picture;
         picture.size = {2 * size.width, 2 * size.height};
         picture.channels = {"Y"};
         picture.says = m_says;
-        picture.says.push_back({"anamorph:texture", m_textures[i].name});
-        picture.solve = [i, size] { return std::make_unique<SolvedMips>(i, size); };
+        picture.says.push_back({"anamorph:texture", texture.name});
+        picture.solve = [index, size, maps = texture.maps] {
+            return std::make_unique<SolvedMips>(index, size, maps);
+        };
         return picture;
     }
 

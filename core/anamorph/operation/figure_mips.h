@@ -17,10 +17,11 @@ namespace anamorph {
 struct MipTexture {
     std::string name;
     std::optional<Size> size;
+    std::shared_ptr<const Source> maps = {};  ///< where it is no picture of the host's
 };
 
 /// Makes a picture of one channel for each texture, twice as large either way; of one that is missing 2 x 2
-/// black pixels. The textures are the first sources that are drawn.
+/// black pixels. Those that are the host's are the first sources that are drawn.
 std::unique_ptr<const Pictures> mip_pictures(std::vector<MipTexture> textures, const Attributes& says);
 
 }  // namespace anamorph

@@ -68,14 +68,15 @@ class MraselWords {
 
 }  // namespace
 
-FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
+MraselInput mrasel_input(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
     constexpr double kFar = 1e9, kPerUnit = 10;
     MraselWords words(text, name);
-    FigureFrame frame;
+    MraselInput input;
+    FigureFrame& frame = input.frame;
     frame.number = 1;
     const int bodies = words.count("the number of ellipsoids");
-    words.number("the flag of debugging", -kFar, kFar);
+    input.debug = words.number("the flag of debugging", -kFar, kFar) == -1;
     const int bands = words.count("the number of bands");
     double above = 0;
     for (int i = 0; i < bands; ++i) {
@@ -96,7 +97,11 @@ FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
     if (!words.at_end())
         words.fail("found \"" + text_file::excerpt(words.next("nothing")) + "\" behind the last of " +
                    std::to_string(bodies) + " ellipsoids");
-    return frame;
+    return input;
+}
+
+FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
+    return mrasel_input(text, name).frame;
 }
 
 }  // namespace anamorph::figure

@@ -16,7 +16,15 @@
 
 namespace anamorph::figure {
 
-/// Reads a frame from a text. Throws Error naming the file (`name`) and the line.
+/// All that a text says.
+struct MraselInput {
+    FigureFrame frame;
+    bool debug = false;  ///< the flag of debugging is -1
+};
+
+/// Reads a text. Throws Error naming the file (`name`) and the line.
+MraselInput mrasel_input(std::string_view text, std::string_view name);
+/// The frame of a text. Throws Error as mrasel_input() does.
 FigureFrame mrasel_frame(std::string_view text, std::string_view name);
 
 }  // namespace anamorph::figure

@@ -9,6 +9,7 @@
 
 #include "anamorph/figure/image/backdrop.h"
 #include "anamorph/figure/image/body_texture.h"
+#include "anamorph/figure/image/perturbation.h"
 #include "anamorph/figure/image/visible_surfaces.h"
 #include "anamorph/figure/outline/stroke_pixels.h"
 #include "anamorph/image/canvas.h"
@@ -118,7 +119,14 @@ struct FigurePicture::Impl {
             glm::dvec3((x - view.middle.x) / zoom, (size.height - y - view.middle.y) / zoom, 1));
     }
 
-    glm::dvec3 color(int body, double x, double y, bool far_side, Textures& open) const {
+    /// What is added to the light of a pixel. Pixels count from the display window's corner: overscan changes none.
+    double perturbation(int x, int y) const {
+        if (look.perturbation == 0) return 0;
+        return look.perturbation *
+               random_of_pixel(look.seed, frame.number, x - look.overscan.width, y - look.overscan.height);
+    }
+
+    glm::dvec3 color(int body, double x, double y, bool far_side, double perturbed, Textures& open) const {
         const auto i = static_cast<std::size_t>(body);
         const SeenSurface& surface = surfaces->surface(body);
         const glm::dvec3 outwards = glm::normalize(surface.gradient(x, y, far_side));
@@ -128,7 +136,7 @@ struct FigurePicture::Impl {
         // Only highlights are seen from somewhere.
         const bool seen_from = look.light.lighting == Lighting::blinn;
         return lit(own, look.light, far_side ? -outwards : outwards,
-                   seen_from ? toward_eye(x, y) : glm::dvec3(0.0));
+                   seen_from ? toward_eye(x, y) : glm::dvec3(0.0), perturbed);
     }
 
     /// Color and alpha of what lies behind all bodies, in a pixel.
@@ -187,7 +195,8 @@ struct FigurePicture::Impl {
             }
             default:
                 if (none) return on_background(glm::dvec3(0.0), 0, x, y, open, store);
-                on_background(color(seen.body, px, py, seen.hit.far_side, open), 1, x, y, open, store);
+                on_background(color(seen.body, px, py, seen.hit.far_side, perturbation(x, y), open), 1, x, y,
+                              open, store);
         }
     }
 
@@ -195,9 +204,10 @@ struct FigurePicture::Impl {
     void value(std::span<const VisiblePart> parts, int x, int y, Textures& open, const Store& store) const {
         glm::dvec3 sum(0.0);
         double alpha = 0;
+        const double perturbed = perturbation(x, y);
         for (const VisiblePart& part : parts) {
             const double share = static_cast<double>(part.samples) / VisibleSurfaces::kSamples;
-            sum += share * color(part.body, part.x, part.y, part.far_side, open);
+            sum += share * color(part.body, part.x, part.y, part.far_side, perturbed, open);
             alpha += share;
         }
         on_background(sum, alpha, x, y, open, store);

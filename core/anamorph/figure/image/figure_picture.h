@@ -44,7 +44,9 @@ inline constexpr float kNoDepth = 1e30f;
 struct FigureLook {
     FigureStyle style = FigureStyle::shaded;
     Light light;
-    bool antialias = true;                 ///< false: colours of the rays through the middle alone
+    double perturbation = 0;  ///< the most that a pixel's light is off at random (perturbation.h)
+    int seed = 0;             ///< of these random numbers
+    bool antialias = true;    ///< false: colours of the rays through the middle alone
     std::optional<glm::dvec3> background;  ///< red, green, blue, 0 to 1; where it is not given, `bands`
     std::vector<BackgroundBand> bands;     ///< the background; by default the frame's, or transparent
     bool backdrop = false;                 ///< a picture as large as the drawn one covers the background; its

@@ -6,6 +6,7 @@
 //     rasel     A + (1 - A) (1 + n.l) / 2                   (Chapman 1986, section 2.9, with l = (0, 1, 0))
 //     lambert   A + (1 - A) max(0, n.l)
 //     blinn     the same, and specular max(0, n.h)^shininess of white is added, h = (l + v) / |l + v|.
+// To what multiplies the colour a random number may be added (perturbation.h); it stays within 0 to 1.
 #pragma once
 
 #include <algorithm>
@@ -33,12 +34,15 @@ inline glm::dvec3 usual_light(Lighting lighting) {
 }
 
 /// A colour from 0 to 1 as it is lit and seen where the surface has the unit normal `n` and the eye is in the unit
-/// direction `v`.
-inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dvec3& n, const glm::dvec3& v) {
+/// direction `v`. `perturbation` is added to the intensity.
+inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dvec3& n, const glm::dvec3& v,
+                      double perturbation = 0) {
     const double cosine = glm::dot(n, light.toward);
     const double direct = light.lighting == Lighting::rasel ? 0.5 * (1 + cosine) : std::max(0.0, cosine);
+    double intensity = light.ambient + (1 - light.ambient) * direct;
+    if (perturbation != 0) intensity = std::clamp(intensity + perturbation, 0.0, 1.0);
     // One variable, which is what is returned: a copy of it would wait for its three numbers at every pixel.
-    glm::dvec3 seen = color * (light.ambient + (1 - light.ambient) * direct);
+    glm::dvec3 seen = color * intensity;
     if (light.lighting == Lighting::blinn && cosine > 0) {
         const glm::dvec3 half = light.toward + v;
         const double length = glm::length(half);
