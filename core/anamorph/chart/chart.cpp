@@ -254,7 +254,8 @@ void Chart::check_padding(const std::string& prefix, const LensModel& lens) cons
     const Box& face = m_pieces[0].box;
     const FaceGrid grid = faces_of(m_projection);
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
-    const bool is_round = lensed == Lensed::equidistant || lensed == Lensed::axial;
+    const bool is_round =
+        lensed == Lensed::equidistant || lensed == Lensed::stereographic || lensed == Lensed::axial;
     if (grid.joined || (grid.columns == 0 && !is_round))
         throw Error(prefix + "padding", brief(m_padding),
                     "must be of a layout of faces or of a fisheye, which " +
