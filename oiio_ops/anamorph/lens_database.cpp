@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -139,6 +140,13 @@ std::string name_of(const Item& item) {
     return what.starts_with(by) ? what : by + " " + what;
 }
 
+/// Leaves those alone that are named in full, if there are some: others may have more words.
+template <class Item>
+void prefer_full_names(std::vector<const Item*>& found, const std::string& asked) {
+    const auto is_full = [&](const Item* item) { return item->Model == asked || name_of(*item) == asked; };
+    if (std::any_of(found.begin(), found.end(), is_full)) std::erase_if(found, std::not_fn(is_full));
+}
+
 /// The names of the first three different ones, for messages.
 template <class Item>
 std::string near_names(const std::vector<const Item*>& list) {
@@ -160,7 +168,8 @@ class Search {
     /// The camera; null where none is named.
     const lfCamera* camera() const {
         if (m_asked.camera.empty()) return nullptr;
-        const std::vector<const lfCamera*> found = cameras(0);
+        std::vector<const lfCamera*> found = cameras(0);
+        prefer_full_names(found, m_asked.camera);
         if (found.empty()) {
             // By metadata alone it serves for its crop factor, which may be given.
             if (m_asked.crop && !m_asked.lens.empty()) return nullptr;
@@ -184,6 +193,7 @@ class Search {
             refuse("lens " + printable(m_asked.lens) + " is not in Lensfun's database" +
                    (camera ? " for " + printable(name_of(*camera)) : std::string()) + ": " +
                    near_names(lenses(camera, crop, LF_SEARCH_LOOSE)));
+        prefer_full_names(found, m_asked.lens);
         // Of calibrations on several sensors that are as good, that of the smallest one, which is nearest to the camera's.
         const int best = found[0]->Score;
         std::stable_sort(found.begin(), found.end(), [](const lfLens* a, const lfLens* b) {

@@ -51,8 +51,8 @@ TEST_F(BadInput, ProjectionsThatAreText) {
     for (const char* key :
          {"ray_x=px", "ray_y=py", "ray_z=1", "point_x=lon", "point_y=lat", "let=k=1", "frame=1"})
         expect_refused(key, "is of to=formula");
-    for (const char* key :
-         {"fov=90", "d=1", "lens=brown:k1=0.1", "scheme=direct", "scheme=hardware", "machine=embm-2003"})
+    for (const char* key : {"fov=90", "d=1", "e=0.5", "lens=brown:k1=0.1", "scheme=direct", "scheme=hardware",
+                            "machine=embm-2003"})
         expect_refused(std::string("to=formula&") + key, "to=formula");
     expect_refused("to=formula&ray_x=px*", "ray_x=px*", "column 4: expected a number");
     expect_refused("to=formula&point_y=lan", "point_y=lan",
@@ -70,6 +70,26 @@ TEST_F(BadInput, ProjectionsThatAreText) {
     open_and_read("city.exr.pano?to=formula&ray_x=px/0&size=20");
     open_and_read("city.exr.pano?to=formula&ray_x=exp(exp(99*px))&size=20");
     open_and_read("city.exr.pano?to=formula&ray_x=1e308*px&ray_y=1e308*py&ray_z=1e-308&size=20");
+}
+
+TEST_F(BadInput, NumbersOfProjectionsAndLensesOfADatabase) {
+    for (const char* of : {"", "src"}) {
+        const std::string d = std::string(of) + "d=", e = std::string(of) + "e=";
+        for (const char* wrong : {"-1", "1001", "nan", "inf", "x", ""}) expect_refused(d + wrong, d + wrong);
+        for (const char* wrong : {"-0.1", "1.1", "nan", "-inf", "2147483648"})
+            expect_refused(e + wrong, e + wrong);
+    }
+    expect_refused("to=double_sphere&d=1.5", "d=1.5: must be from -0.999 to 1 for double_sphere");
+    expect_refused("to=eucm&d=0", "d=0: must be from 0.001 to 1000 for eucm");
+    expect_refused("from=unified&srcd=-0.5", "srcd=-0.5: must be from 0 to 1000 for unified");
+    expect_refused("to=eucm&e=0&fov=180", "fov=180", "below 180 degrees for eucm");
+    expect_refused("from=rectilinear&srclens=ocam:a0=-40", "ocam must be of a stereographic picture");
+    expect_refused("from=stereographic&srclens=ocam:a2=1", "folds at a radius of 0 pixels");
+    expect_refused("from=rectilinear&srclens=poly:k0=nan", "k0 must be a number");
+    for (const char* wrong : {"lensfun:", "lensfun:lens=nothing like it,crop=1,focal=35", "lensfun:focal=nan",
+                              "lensfun:crop=2147483648", "lensfun:lens=a,lens=b", "lensfun:=", "lensfun"})
+        expect_refused(std::string("from=rectilinear&srclens=") + wrong, "srclens=lensfun", "");
+    expect_refused("to=rectilinear&lens=lensfun:lens=x,crop=1,focal=35", "width and height");
 }
 
 TEST_F(BadInput, conformance_20_sizes) {

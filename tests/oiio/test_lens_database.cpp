@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "anamorph/metadata.h"
 #include "anamorph/oiio_ops.h"
@@ -105,7 +106,7 @@ TEST(LensDatabase, SaysWhatIsNear) {
 /// The database, once more.
 const lfDatabase& database() {
     static lfDatabase* const loaded = [] {
-        lfDatabase* all = lfDatabase::Create();
+        lfDatabase* all = new lfDatabase;
         EXPECT_EQ(all->Load(), LF_NO_ERROR);
         return all;
     }();
@@ -116,13 +117,10 @@ const lfDatabase& database() {
 class Reference {
   public:
     Reference(const lfLens& lens, double crop, double focal, const Size& size)
-        : m_modifier(lfModifier::Create(&lens, static_cast<float>(crop), size.width, size.height)) {
+        : m_modifier(std::make_unique<lfModifier>(&lens, static_cast<float>(crop), size.width, size.height)) {
         m_modifier->Initialize(&lens, LF_PF_F32, static_cast<float>(focal), 8, 1000, 1, lens.Type,
                                LF_MODIFY_DISTORTION, false);
     }
-    ~Reference() { m_modifier->Destroy(); }
-    Reference(const Reference&) = delete;
-    Reference& operator=(const Reference&) = delete;
     /// Not a number where there is no distortion at all.
     Point<double> source(double x, double y) const {
         float xy[2];
@@ -133,7 +131,7 @@ class Reference {
     }
 
   private:
-    lfModifier* m_modifier;
+    std::unique_ptr<lfModifier> m_modifier;
 };
 
 /// Lensfun's numbers are floats: of coordinates up to `far` pixels, each of its few operations is off by 2^-24 of that.
