@@ -34,7 +34,7 @@ class FisheyePair {
 
   private:
     std::array<std::array<double, 3>, 2>
-        m_turns;       ///< yaw, pitch and roll of front and back, from straight ahead, in degrees
+        m_turns;    ///< yaw, pitch and roll of front and back, from straight ahead, in degrees
     double m_seam;  ///< radians
 };
 
