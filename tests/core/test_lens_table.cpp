@@ -179,8 +179,8 @@ TEST(LensTable, ViewsThroughLensesTakeFewBlocks) {
         return count;
     };
     const std::size_t bare = blocks_of(Chart(Projection::rectilinear, size.width, size.height, 90));
-    for (const char* text : {"brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003", "brown:k1=-0.1,s1=0.002,s3=-0.001",
-                             "3de4:k1=0.1,k2=0.03"})
+    for (const char* text : {"brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003",
+                             "brown:k1=-0.1,k2=0.02,s1=0.002,s3=-0.001", "3de4:k1=0.1,k2=0.03"})
         EXPECT_LE(2 * blocks_of(oracle::chart_of(oracle::view_through(text, size, 90))), 3 * bare) << text;
 }
 

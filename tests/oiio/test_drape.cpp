@@ -228,11 +228,12 @@ TEST_F(DrapeFiles, EachPixelShowsTheSideThatIsSeen) {
     constexpr int kWidth = 96, kHeight = 64;
     for (const std::string keys : {"", "&filter=bilinear", "&alpha=1"}) {
         SCOPED_TRACE(keys);
-        const std::string roll =
-            "red.exr.drape?surface=cylinder&angle=220&rotate=20,110,0&camera=0,0.2,1.2&size=96x64" + keys;
+        const std::string bare =
+            "red.exr.drape?surface=cylinder&angle=220&rotate=20,110,0&camera=0,0.2,1.2&size=96x64";
+        const std::string roll = bare + keys, values = keys == "&alpha=1" ? bare : roll;
         const std::vector<float> seen = read_floats(roll + "&back=blue.exr"),
-                                 st = read_floats(roll + "&output=stmap"),
-                                 cover = read_floats(roll + "&output=coverage");
+                                 st = read_floats(values + "&output=stmap"),
+                                 cover = read_floats(values + "&output=coverage");
         const std::size_t channels = seen.size() / cover.size();
         const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * kWidth + x); };
         int sides[2] = {};

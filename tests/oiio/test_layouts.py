@@ -202,7 +202,7 @@ class FisheyePair(unittest.TestCase):
     def test_chains_draw_it_first(self):
         random = np.random.default_rng(SEED + 4)
         write("chain.exr", random.uniform(0, 1, (SIDE, 2 * SIDE, 3)))
-        inner = "chain.exr.pano?from=dual_fisheye&srcfov=200&feather=15&size=64x48&yaw=80"
+        inner = "chain.exr.pano?from=dual_fisheye&srcfov=200&seam=15&size=64x48&yaw=80"
         outer = oiio.ImageBuf(f"x.lens?lens=3de4:k1=0&filter=nearest&src=({inner})")
         self.assertEqual(outer.spec().get_string_attribute("anamorph:chain"),
                          "lens of a picture that is drawn first: its source is no picture of maps")

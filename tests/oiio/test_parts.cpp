@@ -246,8 +246,10 @@ TEST_F(Parts, ErrorsNameTheirKeys) {
     EXPECT_THAT(open_error("beauty.exr.map?overscan=500000"), HasSubstr("overscan=1000096x1000064"));
     EXPECT_THAT(open_error("beauty.exr.map?size=1000000x1000000"), HasSubstr("size=1000000x1000000"));
     // Keys that mean nothing where they stand.
-    EXPECT_THAT(open_error("beauty.exr.pano?from=latlong&d=0.5"),
-                HasSubstr("d=0.5: is of pannini and unified: must not be given with to=rectilinear"));
+    EXPECT_THAT(
+        open_error("beauty.exr.pano?from=latlong&d=0.5"),
+        HasSubstr(
+            "d=0.5: is of pannini, unified, eucm, double_sphere: must not be given with to=rectilinear"));
     EXPECT_THAT(open_error("beauty.exr.pano?from=latlong&srcd=0.5"),
                 HasSubstr("must not be given with from=equirectangular"));
     for (const std::string output : {"stmap", "bound", "error", "coverage"})

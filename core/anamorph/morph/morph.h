@@ -49,9 +49,10 @@ struct MorphOptions {
 void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
                    int shapes);
 
-/// The weights of so many key shapes in the shape of a morph, and in what is drawn of it: those that are given, or of t, or of the one
-/// picture that is shown. Throws Error on weights and times that are out of range or not as many.
+/// The weights of so many key shapes in the shape of a morph: those that are given, or of t. Throws Error on weights and times that are
+/// out of range or not as many.
 std::vector<double> shape_mixture(const MorphOptions& options, int shapes);
+/// The weights of so many pictures in what is drawn: as of the shapes, or of the one picture that is shown. Throws Error likewise.
 std::vector<double> color_mixture(const MorphOptions& options, int shapes);
 /// The border of one of a morph's pictures.
 Border morph_border(const Size& picture, Wrap wrap);
