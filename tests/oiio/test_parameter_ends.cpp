@@ -108,7 +108,10 @@ class ParameterEnds : public InFolder {
             add(of.empty() ? "to" : "from", "rectilinear");
             if (key == of + "sensor") arguments.push_back({of + "focal", "24"});
         }
-        if (key == "e" || key == "srce") add(key == "e" ? "to" : "from", "eucm");
+        if (key == "e" || key == "srce") {
+            add(key == "e" ? "to" : "from", "eucm");
+            arguments.push_back({key == "e" ? "fov" : "srcfov", "90"});
+        }
         if (key == "d" || key == "srcd") {
             // The least value of all is one projection's, the largest one others'.
             add(key == "d" ? "to" : "from", value.starts_with('-') ? "double_sphere" : "pannini");
