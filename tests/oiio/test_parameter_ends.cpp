@@ -84,6 +84,15 @@ class ParameterEnds : public InFolder {
         ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=still.json&output=stmap' -o st.exr").status, 0);
     }
 
+    /// A project of Hugin of so many images.
+    static std::string write_project(int images) {
+        std::string text = "p f2 w8 h4 v360\n";
+        for (int i = 0; i < images; ++i)
+            text += "i w24 h12 f4 v360 y" + std::to_string(i % 360) + " p0 r0 n\"city.exr\"\n";
+        write_text("images.pto", text);
+        return "images.pto";
+    }
+
     /// A recipe in which any value of `key` has a meaning.
     static std::string name_for(const Operation& operation, const std::string& key,
                                 const std::string& value) {
@@ -153,6 +162,8 @@ class ParameterEnds : public InFolder {
         if (key == "picture") {
             for (const Assignment& a : pictures_to(value)) arguments.push_back(a);
         }
+        if (operation.name == "pano" && (key == "image" || key == "layers" || key == "feather"))
+            return write_project(key == "image" ? 1024 : 2) + "?" + key + "=" + value;
         arguments.push_back({key, value});
         return example(operation, sources, arguments);
     }
