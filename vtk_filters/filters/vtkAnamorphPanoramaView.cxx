@@ -111,8 +111,9 @@ void vtkAnamorphPanoramaView::Draw(vtkInformationVector** inputs, const int* ext
     const anamorph_vtk::ImageTexture panorama(vtkImageData::GetData(inputs[0]),
                                               this->GetInputArrayToProcess(0, inputs), kName);
     anamorph::ParameterValues values(*anamorph::pano_operation().parameters);
-    values.set("from", std::string(anamorph::name_of(anamorph::kProjections[this->Projection])));
-    values.set("srcd", this->PanniniDistance);
+    const anamorph::Projection projection = anamorph::kProjections[this->Projection];
+    values.set("from", std::string(anamorph::name_of(projection)));
+    if (anamorph::numbers_of(projection) > 0) values.set("srcd", this->PanniniDistance);
     values.set("fov", this->ViewAngle);
     values.set("yaw", this->Yaw);
     values.set("pitch", this->Pitch);

@@ -87,12 +87,12 @@ std::stringstream proxy(const std::string& name) {
 
 TEST(ToyProjection, HasAnEnumeratorAndIsInTheProxy) {
     EXPECT_EQ(int{vtkAnamorphPanoramaProjection::CUBEMAP_3X2}, 8);
-    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::TOY}, 20);
-    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::NumberOfProjections}, 21);
+    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::TOY}, 22);
+    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::NumberOfProjections}, 23);
     const std::string menu = proxy("panorama_view").str();
     EXPECT_THAT(menu, HasSubstr("<Entry value=\"0\" text=\"Equirectangular\"/>"));
     EXPECT_THAT(menu, HasSubstr("<Entry value=\"8\" text=\"Cubemap 3 x 2\"/>"));
-    EXPECT_THAT(menu, HasSubstr("<Entry value=\"20\" text=\"Toy\"/>"));
+    EXPECT_THAT(menu, HasSubstr("<Entry value=\"22\" text=\"Toy\"/>"));
 }
 
 TEST(ToySurface, IsInTheProxy) {
