@@ -7,6 +7,7 @@
 #include "anamorph/error.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/operation/pano.h"
+#include "anamorph/projector/projector_rows.h"
 #include "execution.h"
 #include "image_texture.h"
 #include "vtkDataArray.h"
@@ -113,6 +114,7 @@ void vtkAnamorphPanoramaView::Draw(vtkInformationVector** inputs, const int* ext
     anamorph::ParameterValues values(*anamorph::pano_operation().parameters);
     const anamorph::Projection projection = anamorph::kProjections[this->Projection];
     values.set("from", std::string(anamorph::name_of(projection)));
+    anamorph::kPanniniDistanceRow.check(this->PanniniDistance, "srcd");
     if (anamorph::numbers_of(projection) > 0) values.set("srcd", this->PanniniDistance);
     values.set("fov", this->ViewAngle);
     values.set("yaw", this->Yaw);
