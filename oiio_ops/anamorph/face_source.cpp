@@ -37,6 +37,9 @@ void check_alike(const CacheSource& face, const std::string& name, const CacheSo
     const ImageSpec own = upright(face.spec()), other = upright(first.spec());
     const Size size{own.full_width, own.full_height};
     const std::string file = "source \"" + printable(name) + "\" has ";
+    if (const float aspect = own.get_float_attribute("PixelAspectRatio", 1); aspect != 1)
+        throw Error(file + "PixelAspectRatio=" + shortest(aspect) +
+                    ": must be 1, as a face of a cube is square");
     if (size.width != size.height)
         throw Error(file + text_of(size) + ": must be square, as a face of a cube is");
     const auto check = [&](const std::string& has, const std::string& wanted) {

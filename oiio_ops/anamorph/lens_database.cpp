@@ -52,7 +52,10 @@ double positive_number(const std::string& parameter, const std::string& text, st
     double number = 0;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
     if (error != std::errc() || end != value.data() + value.size() || !(number >= 0.01 && number <= 1e5))
-        throw Error(parameter, printable(text), std::string(key) + " must be a number from 0.01 to 100000");
+        throw Error(
+            parameter, printable(text),
+            std::string(key) +
+                " must be a number from 0.01 to 100000, and the only keys are lens, camera, focal and crop");
     return number;
 }
 

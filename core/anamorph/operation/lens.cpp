@@ -105,11 +105,14 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
                         by_focal_length, std::move(says)};
     };
     // Its focal length is a0.
-    if (model.kind == LensModel::Kind::ocam)
-        return {Chart(Projection::stereographic, size.width, size.height,
-                      fov_of_plane_width(Projection::stereographic, size.width / std::fabs(model.values[0])),
-                      PixelSpacing::edges, "", 1, model),
+    if (model.kind == LensModel::Kind::ocam) {
+        if (model.values[0] == 0) throw Error("lens", model.text(), "must have an a0 other than 0");
+        const double fov =
+            fov_of_plane_width(Projection::stereographic, size.width / std::fabs(model.values[0]));
+        return {Chart(Projection::stereographic, size.width, size.height, fov, PixelSpacing::edges, "", 1,
+                      model, vertical_field(Projection::stereographic, size, fov, facts.pixel_aspect)),
                 true};
+    }
     // Of the other models nothing depends on it.
     if (!by_focal_length) return with(Chart::default_fov(projection));
     if (values.given("fov")) return with(values.number("fov"));

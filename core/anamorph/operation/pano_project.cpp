@@ -25,9 +25,10 @@ namespace {
 
 const char* const kProjectRows[] = {"image", "layers", "feather"};
 /// What a project says itself, and what is drawn in another way.
-const char* const kRowsOfOneSource[] = {"from",    "srcfov", "srcvfov", "srcfocal", "srcsensor",
-                                        "srccrop", "srcd",   "srcyaw",  "srcpitch", "srcroll",
-                                        "srclens", "pixels", "machine", "stereo",   "eye"};
+const char* const kRowsOfOneSource[] = {
+    "from",       "srcfov",  "srcvfov",   "srcfocal",    "srcsensor",  "srccrop",  "srcd",       "srcyaw",
+    "srcpitch",   "srcroll", "srclens",   "pixels",      "machine",    "stereo",   "eye",        "srce",
+    "srcpadding", "seam",    "front_yaw", "front_pitch", "front_roll", "back_yaw", "back_pitch", "back_roll"};
 
 std::shared_ptr<const HuginProject> read_project(const SideFile& file, const SideFileReader& reader) {
     return read_once<HuginProject>(file, "hugin project",
