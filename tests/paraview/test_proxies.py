@@ -35,7 +35,7 @@ ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamor
 # Classes whose properties are an operation's parameters, under the same names.
 OPERATION_OF = {"vtkAnamorphDrape": "drape"}
 # Parameters of those that are no property, as VTK has its own words for them, or does without.
-NOT_OFFERED = {"drape_fov", "drape_scale", "drape_block", "drape_overlap",
+NOT_OFFERED = {"drape_data_filter", "drape_fov", "drape_scale", "drape_block", "drape_overlap",
                "drape_view", "drape_wrap", "drape_scheme", "drape_output"}
 # Numbers that the panel has in a table, where they have no range of their own.
 IN_TABLES = {"extent"}

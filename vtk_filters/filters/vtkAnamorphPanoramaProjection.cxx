@@ -12,6 +12,7 @@
 #include "anamorph/error.h"
 #include "anamorph/geometry/size.h"
 #include "anamorph/projector/projected_triangles.h"
+#include "anamorph/projector/projector_rows.h"
 #include "automatic_plane.h"
 #include "execution.h"
 #include "input_times.h"
@@ -252,6 +253,7 @@ double vtkAnamorphPanoramaProjection::Run::scene_size() const {
 }
 
 void vtkAnamorphPanoramaProjection::Run::make_painter() {
+    anamorph::kPanniniDistanceRow.check(filter.PanniniDistance, "panorama d");
     const auto lens =
         filter.Lens && *filter.Lens ? anamorph::LensModel::parse(filter.Lens) : anamorph::LensModel{};
     const anamorph::Chart panorama(anamorph::kProjections[filter.Projection], filter.PanoramaWidth,

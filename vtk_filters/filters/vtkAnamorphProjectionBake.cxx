@@ -10,6 +10,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/projector/projection_bake.h"
+#include "anamorph/projector/projector_rows.h"
 #include "automatic_plane.h"
 #include "execution.h"
 #include "input_times.h"
@@ -190,6 +191,7 @@ void vtkAnamorphProjectionBake::Run::take_pictures() {
         bytes = bytes && scalars->GetDataType() == VTK_UNSIGNED_CHAR;
         int size[3];
         image->GetDimensions(size);
+        anamorph::kPanniniDistanceRow.check(filter.PanniniDistance, "panorama d");
         const anamorph::Chart chart(
             anamorph::kProjections[filter.Projection], size[0], size[1], filter.FieldOfView,
             anamorph::PixelSpacing::edges, "panorama ", filter.PanniniDistance,
