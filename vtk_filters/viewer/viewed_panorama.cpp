@@ -61,8 +61,7 @@ ViewedPanorama::ViewedPanorama(const std::string& file, const std::vector<Assign
     const auto pictures = read(*m_operation, first, m_known);
     std::vector<std::unique_ptr<anamorph::Source>> images;
     images.push_back(std::move(image));
-    m_stacks =
-        anamorph::make_source_stacks(std::move(images), {spec}, *pictures, first.text("colorspace"));
+    m_stacks = anamorph::make_source_stacks(std::move(images), {spec}, *pictures, first.text("colorspace"));
 }
 
 bool ViewedPanorama::is_mosaic() const {
