@@ -149,7 +149,7 @@ void measure_blocks(const Settings& settings, Report& report, int side) {
         rows[k].ratio_to_exact = times[0].median / times[k].median;
         report.add(rows[k]);
         if (k > 0)
-            report.add_limit(rows[k].case_name + ", " + rows[k].scheme + ": times the plain drape", 60,
+            report.add_limit(rows[k].case_name + ", " + rows[k].scheme + ": times the plain drape", 10,
                              times[k].median / times[0].median);
     }
 }

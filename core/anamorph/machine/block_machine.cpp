@@ -2,6 +2,7 @@
 #include "anamorph/machine/block_machine.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <memory>
@@ -15,6 +16,7 @@ namespace {
 
 // The most pixels of the output image memory.
 constexpr int kMostPixels = 1 << 28;
+constexpr std::size_t kMostSegment = static_cast<std::size_t>(kSegmentRow.most);
 
 /// Pixels whose centres lie in [low, high], of a row of `count`.
 struct PixelRange {
@@ -120,67 +122,110 @@ class BlockOnScreen {
     Point<double> m_low{}, m_high{};
 };
 
-/// One coordinate of the addresses of a block's pixels (2.12) in fixed point. Sums that are beyond the range saturate.
+/// One coordinate of the addresses of a block's pixels (2.12) in fixed point, segment by segment. A pixel's is the sum of a part that
+/// its column has and one that its row has. Sums that are beyond the range saturate.
 class AddressSums {
   public:
     /// `x`, `y`: the pixel that addresses are counted from, which has the address `at`; `across` and `down`: what a pixel gains.
     AddressSums(const BlockMachine& machine, const NumberFormat& format, int x, int y, double at,
                 double across, double down)
-        : m_way(machine.addresses), m_format(format), m_segment(machine.segment), m_x(x), m_y(y) {
+        : m_way(machine.addresses),
+          m_format(format),
+          m_least(-std::ldexp(1.0, format.bits - 1 - format.fraction)),
+          m_largest(largest(format)),
+          m_side(machine.segment),
+          m_x(x),
+          m_y(y),
+          m_across(across),
+          m_down(down) {
         m_at = fixed(at, m_beyond);
-        if (m_way == Addressing::direct) {
-            m_across = across;
-            m_down = down;
-            return;
+        // Sums of steps are of steps that are rounded, and so are those of segments.
+        if (m_way != Addressing::direct) {
+            m_step_across = fixed(step() * across, m_beyond);
+            m_step_down = fixed(step() * down, m_beyond);
         }
-        m_across = fixed(across, m_beyond);
-        m_down = fixed(down, m_beyond);
-        if (m_way == Addressing::repeated) return;
-        // What pixels of a segment gain against its first one, and a segment against the one before.
-        for (int k = 0; k < m_segment; ++k) {
-            m_within_across.push_back(fixed(k * across, m_beyond));
-            m_within_down.push_back(fixed(k * down, m_beyond));
+        if (m_way != Addressing::segments) return;
+        for (int k = 0; k < m_side; ++k) {
+            m_within_across[k] = product(k, across);
+            m_within_down[k] = product(k, down);
         }
-        m_segment_across = fixed(m_segment * across, m_beyond);
-        m_segment_down = fixed(m_segment * down, m_beyond);
-        m_at = fixed(fixed(m_at - m_within_across[place_in(m_x)], m_beyond) - m_within_down[place_in(m_y)],
-                     m_beyond);
+        // Segments are counted from their first pixels.
+        const Sum &left = m_within_across[m_x % m_side], &above = m_within_down[m_y % m_side];
+        m_beyond = m_beyond || left.beyond || above.beyond;
+        m_at = limited(limited(m_at - left.value, m_beyond) - above.value, m_beyond);
     }
 
-    /// The address of a pixel. Sets `beyond` where it, or what it is made of, saturated.
-    double at(int x, int y, bool& beyond) const {
-        beyond = beyond || m_beyond;
-        switch (m_way) {
-            case Addressing::direct:
-                return fixed(fixed(m_at + fixed((x - m_x) * m_across, beyond), beyond) +
-                                 fixed((y - m_y) * m_down, beyond),
-                             beyond);
-            case Addressing::repeated:
-                return walk(m_at, y - m_y, m_down, x - m_x, m_across, beyond);
-            default:
-                break;
+    /// Enters a segment: finds the parts of its columns and rows.
+    void enter(const Box& segment) {
+        m_segment = segment;
+        const Sum first = first_of(segment);
+        for (int x = segment.x0; x < segment.x1; ++x) {
+            Sum& part = m_columns[x - segment.x0];
+            // What a walk along the row adds is a whole number of units however far it goes.
+            if (m_way == Addressing::repeated) {
+                part = {(x - m_x) * m_step_across, m_beyond};
+                continue;
+            }
+            part =
+                m_way == Addressing::segments ? m_within_across[x - segment.x0] : product(x - m_x, m_across);
+            part.beyond = part.beyond || first.beyond;
+            part.value = limited(first.value + part.value, part.beyond);
         }
-        const double first = walk(m_at, y / m_segment - m_y / m_segment, m_segment_down,
-                                  x / m_segment - m_x / m_segment, m_segment_across, beyond);
-        return fixed(fixed(first + m_within_across[place_in(x)], beyond) + m_within_down[place_in(y)],
-                     beyond);
+        for (int y = segment.y0; y < segment.y1; ++y) {
+            Sum& part = m_rows[y - segment.y0];
+            part = m_way == Addressing::repeated   ? Sum{m_at + (y - m_y) * m_step_down, false}
+                   : m_way == Addressing::segments ? m_within_down[y - segment.y0]
+                                                   : product(y - m_y, m_down);
+            part.value = limited(part.value, part.beyond);
+        }
+    }
+    /// The address of a pixel of the segment. Sets `beyond` where it, or what it is made of, saturated.
+    double at(int x, int y, bool& beyond) const {
+        const Sum &column = m_columns[x - m_segment.x0], &row = m_rows[y - m_segment.y0];
+        beyond = beyond || column.beyond || row.beyond;
+        return limited(column.value + row.value, beyond);
     }
 
   private:
+    struct Sum {
+        double value;
+        bool beyond;
+    };
+
     double fixed(double value, bool& beyond) const { return nearest(m_format, value, beyond); }
-    std::size_t place_in(int pixel) const { return static_cast<std::size_t>(pixel % m_segment); }
-    /// Steps down and then steps across, one after the other. All are multiples of one unit: their sum is the product, and where
-    /// one of them saturates all that follow do.
-    double walk(double from, int rows, double down, int columns, double across, bool& beyond) const {
-        return fixed(fixed(from + rows * down, beyond) + columns * across, beyond);
+    /// A sum of numbers of the format is in the range, or saturates: it is a multiple of the same unit.
+    double limited(double sum, bool& beyond) const {
+        const double inside = std::clamp(sum, m_least, m_largest);
+        beyond = beyond || inside != sum;
+        return inside;
+    }
+    Sum product(int pixels, double gain) const {
+        Sum result{0, false};
+        result.value = fixed(pixels * gain, result.beyond);
+        return result;
+    }
+    /// Pixels of a step.
+    int step() const { return m_way == Addressing::segments ? m_side : 1; }
+
+    /// The address that products are added to: that of the segment's first pixel, by steps down and then across from segment to
+    /// segment, whose sums are products as all of them are multiples of one unit; or of the pixel that addresses are counted from.
+    Sum first_of(const Box& segment) const {
+        Sum first{m_at, m_beyond};
+        if (m_way != Addressing::segments) return first;
+        const int rows = segment.y0 / m_side - m_y / m_side, columns = segment.x0 / m_side - m_x / m_side;
+        first.value = limited(first.value + rows * m_step_down, first.beyond);
+        first.value = limited(first.value + columns * m_step_across, first.beyond);
+        return first;
     }
 
     Addressing m_way;
     NumberFormat m_format;
-    int m_segment, m_x, m_y;
-    double m_at = 0, m_across = 0, m_down = 0, m_segment_across = 0, m_segment_down = 0;
-    std::vector<double> m_within_across, m_within_down;
+    double m_least, m_largest;
+    int m_side, m_x, m_y;
+    double m_across, m_down, m_at = 0, m_step_across = 0, m_step_down = 0;
     bool m_beyond = false;
+    Box m_segment{};
+    std::array<Sum, kMostSegment> m_within_across, m_within_down, m_columns, m_rows;
 };
 
 /// The addresses of a block, and the block's rectangle as they have it.
@@ -189,23 +234,31 @@ class BlockAddresses {
     BlockAddresses(const BlockMachine& machine, const BlockOnScreen& block, const Size& screen)
         : BlockAddresses(machine, block, block.reference_x(screen), block.reference_y(screen)) {}
 
-    Point<double> at(int x, int y, bool& beyond) const {
-        return {m_u.at(x, y, beyond), m_v.at(x, y, beyond)};
-    }
-    bool holds(const Point<double>& at) const {
-        return at.x >= m_low.x && at.x <= m_high.x && at.y >= m_low.y && at.y <= m_high.y;
-    }
-    /// May a pixel of a box lie in the rectangle? Addresses only rise or only fall along rows and columns.
-    bool meets(const Box& box) const {
+    /// Enters a segment of the screen. False where none of its pixels can lie in the rectangle: addresses only rise or only fall along
+    /// rows and columns.
+    bool enter(const Box& segment) {
+        m_u.enter(segment);
+        m_v.enter(segment);
         Point<double> least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
-        for (const int x : {box.x0, box.x1 - 1})
-            for (const int y : {box.y0, box.y1 - 1}) {
+        for (const int x : {segment.x0, segment.x1 - 1})
+            for (const int y : {segment.y0, segment.y1 - 1}) {
                 bool beyond = false;
                 const Point<double> corner = at(x, y, beyond);
                 least = {std::min(least.x, corner.x), std::min(least.y, corner.y)};
                 most = {std::max(most.x, corner.x), std::max(most.y, corner.y)};
             }
         return most.x >= m_low.x && least.x <= m_high.x && most.y >= m_low.y && least.y <= m_high.y;
+    }
+    /// The address of a pixel of the segment. Sets `beyond` where it saturated.
+    Point<double> at(int x, int y, bool& beyond) const {
+        return {m_u.at(x, y, beyond), m_v.at(x, y, beyond)};
+    }
+    /// Does a pixel of the segment lie in the rectangle? Finds its address then, as at() does.
+    bool holds(int x, int y, Point<double>& address, bool& beyond) const {
+        address.x = m_u.at(x, y, beyond);
+        if (address.x < m_low.x || address.x > m_high.x) return false;
+        address.y = m_v.at(x, y, beyond);
+        return address.y >= m_low.y && address.y <= m_high.y;
     }
 
   private:
@@ -297,7 +350,7 @@ class Drawer {
   private:
     void draw(std::size_t number) {
         const BlockOnScreen& block = m_blocks[number];
-        const BlockAddresses addresses(m_machine, block, m_frame.screen);
+        BlockAddresses addresses(m_machine, block, m_frame.screen);
         const PixelRange columns = block.columns(m_frame.screen), rows = block.rows(m_frame.screen);
         if (columns.last < columns.first || rows.last < rows.first) return;
         const int side = m_machine.segment;
@@ -305,7 +358,7 @@ class Drawer {
             for (int x = columns.first / side * side; x <= columns.last; x += side) {
                 const Box segment{x, y, std::min(x + side, m_frame.screen.width),
                                   std::min(y + side, m_frame.screen.height)};
-                if (addresses.meets(segment)) draw_segment(number, addresses, segment);
+                if (addresses.enter(segment)) draw_segment(number, addresses, segment);
             }
     }
 
@@ -314,8 +367,8 @@ class Drawer {
         for (int y = segment.y0; y < segment.y1; ++y)
             for (int x = segment.x0; x < segment.x1; ++x) {
                 bool beyond = false;
-                const Point<double> at = addresses.at(x, y, beyond);
-                if (!addresses.holds(at)) continue;
+                Point<double> at;
+                if (!addresses.holds(x, y, at, beyond)) continue;
                 ++drawn;
                 show(number, m_frame.index(x, y), at, beyond);
             }

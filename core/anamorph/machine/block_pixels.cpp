@@ -10,10 +10,10 @@
 #include "anamorph/error.h"
 #include "anamorph/image/canvas.h"
 #include "anamorph/image/pixel.h"
-#include "anamorph/image/point_sampler.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/strips.h"
 #include "anamorph/image/summed_areas.h"
+#include "anamorph/image/window.h"
 
 namespace anamorph::machine {
 
@@ -24,62 +24,72 @@ class BlockPixels::Reader {
     Reader(const BlockPixels& pixels, const Source& source, const SummedAreas* sums)
         : m_pixels(pixels),
           m_sums(sums),
-          m_sampler(source, pixels.m_border),
-          m_channels(static_cast<std::size_t>(source.channels())),
-          m_texel(m_channels),
-          m_sum(m_channels) {}
+          m_window_reader(source, pixels.m_border),
+          m_weight_unit(std::ldexp(1.0, pixels.m_weight_bits)),
+          m_channels(source.channels()),
+          m_texel(static_cast<std::size_t>(m_channels)),
+          m_sum(static_cast<std::size_t>(m_channels)) {}
 
     /// Writes what stands at an address, of a block whose pixels gain `steps` of texels, to `pixel`: colour multiplied by alpha. False
     /// where the source could not be read.
     bool read(const Point<double>& at, const Jacobian& steps, float* pixel) {
-        m_width = std::fabs(steps.x_i) + std::fabs(steps.x_j);
-        m_height = std::fabs(steps.y_i) + std::fabs(steps.y_j);
-        if (m_pixels.m_filter == Filter::nearest) {
-            if (!store(std::floor(at.x), std::floor(at.y))) return false;
-            std::copy(m_texel.begin(), m_texel.end(), pixel);
-            return true;
-        }
-        const double i = std::floor(at.x - 0.5), j = std::floor(at.y - 0.5);
-        const double right = weight(at.x - 0.5 - i), below = weight(at.y - 0.5 - j);
+        const bool nearest = m_pixels.m_filter == Filter::nearest;
+        const double shift = nearest ? 0 : 0.5;
+        const int i = static_cast<int>(std::floor(at.x - shift)),
+                  j = static_cast<int>(std::floor(at.y - shift));
+        if (!enter(i, j, nearest ? 1 : 2, steps)) return false;
+        // Multiples of the weights' unit.
+        const double right = nearest ? 0 : weight(at.x - shift - i),
+                     below = nearest ? 0 : weight(at.y - shift - j);
         std::fill(m_sum.begin(), m_sum.end(), 0.0);
         for (const int dy : {0, 1})
             for (const int dx : {0, 1}) {
                 const double share = (dx ? right : 1 - right) * (dy ? below : 1 - below);
                 // What has no weight is not looked at: it may be no number.
                 if (share == 0) continue;
-                if (!store(i + dx, j + dy)) return false;
-                for (std::size_t c = 0; c < m_channels; ++c) m_sum[c] += share * double(m_texel[c]);
+                store(i + dx, j + dy);
+                for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += share * double(m_texel[c]);
             }
-        for (std::size_t c = 0; c < m_channels; ++c) pixel[c] = static_cast<float>(m_sum[c]);
+        for (std::size_t c = 0; c < m_sum.size(); ++c) pixel[c] = static_cast<float>(m_sum[c]);
         return true;
     }
 
   private:
-    double weight(double part) const {
-        const double unit = std::ldexp(1.0, m_pixels.m_weight_bits);
-        return std::nearbyint(part * unit) / unit;
-    }
+    double weight(double part) const { return std::nearbyint(part * m_weight_unit) / m_weight_unit; }
 
+    /// Makes texels from (i, j) on ready, so many each way.
+    bool enter(int i, int j, int side, const Jacobian& steps) {
+        m_width = std::fabs(steps.x_i) + std::fabs(steps.x_j);
+        m_height = std::fabs(steps.y_i) + std::fabs(steps.y_j);
+        const Box texels{i, j, i + side, j + side};
+        if (m_sums || intersection(texels, m_window.box) == texels) return true;
+        // A window with room for the pixels that come next.
+        constexpr int kRoom = 16;
+        return m_window_reader.get(0, 0, {i - kRoom, j - kRoom, i + kRoom, j + kRoom}, m_window);
+    }
     /// The texel (i, j) as the memory holds it.
-    bool store(double i, double j) {
+    void store(int i, int j) {
         if (m_sums)
             m_sums->mean(i + 0.5, j + 0.5, m_width, m_height, m_pixels.m_border.wrap(), m_texel.data());
-        else if (!m_sampler.sample(Filter::nearest, 0, 0, i + 0.5, j + 0.5, m_texel.data()))
-            return false;
-        if (m_pixels.m_texel_bits > 0) {
-            const double most = std::ldexp(1.0, m_pixels.m_texel_bits) - 1;
-            for (float& value : m_texel)
-                value = static_cast<float>(
-                    std::isnan(value) ? 0
-                                      : std::nearbyint(std::clamp(double(value), 0.0, 1.0) * most) / most);
-        }
-        return true;
+        else
+            load_channels(m_window.texels + (j - m_window.box.y0) * m_window.row_stride +
+                              std::ptrdiff_t{i - m_window.box.x0} * m_channels * size_of(m_window.type),
+                          m_window.type, m_channels, m_texel.data());
+        if (m_pixels.m_texel_bits == 0) return;
+        const double most = std::ldexp(1.0, m_pixels.m_texel_bits) - 1;
+        for (float& value : m_texel)
+            value =
+                std::isnan(value)
+                    ? 0
+                    : static_cast<float>(std::nearbyint(std::clamp(double(value), 0.0, 1.0) * most) / most);
     }
 
     const BlockPixels& m_pixels;
     const SummedAreas* m_sums;
-    PointSampler m_sampler;
-    std::size_t m_channels;
+    WindowReader m_window_reader;
+    Window m_window;
+    double m_weight_unit;
+    int m_channels;
     double m_width = 1, m_height = 1;
     std::vector<float> m_texel;
     std::vector<double> m_sum;
@@ -97,7 +107,6 @@ bool BlockPixels::draw(const Source* source, const Box& box, const ImageView& vi
                        const ParallelFor& parallel_for) const {
     if (!source) throw Error("a picture in colour needs a source");
     const Canvas canvas(view, box);
-    canvas.fill(box, 0);
     // A source that keeps no sums is lent a place for them.
     std::optional<Pyramid> lent;
     const SummedAreas* sums = nullptr;
@@ -107,21 +116,28 @@ bool BlockPixels::draw(const Source* source, const Box& box, const ImageView& vi
     }
     const BlockFrame& frame = m_map->frame();
     const Box whole{0, 0, m_map->width(), m_map->height()};
+    if (!(intersection(box, whole) == box)) canvas.fill(box, 0);
     std::atomic<bool> ok{true};
     for_each_square(intersection(box, whole), parallel_for, [&](const Box& square) {
         Reader reader(*this, *source, sums);
-        std::vector<float> pixel(static_cast<std::size_t>(source->channels()) + 16);
-        for (int y = square.y0; y < square.y1; ++y)
+        const int channels = source->channels();
+        std::vector<float> row(static_cast<std::size_t>(square.width() * channels + 16));
+        for (int y = square.y0; y < square.y1; ++y) {
+            std::fill(row.begin(), row.end(), 0.0f);
             for (int x = square.x0; x < square.x1; ++x) {
+                float* const pixel = row.data() + std::ptrdiff_t{x - square.x0} * channels;
                 const std::size_t at = frame.index(x, y);
                 if (frame.block[at] == BlockFrame::kNone) continue;
                 if (!reader.read(frame.addresses[at], frame.steps[static_cast<std::size_t>(frame.block[at])],
-                                 pixel.data()))
+                                 pixel))
                     ok = false;
                 if (source->unassociated_alpha() >= 0)
-                    unassociate_alpha(pixel.data(), source->channels(), source->unassociated_alpha());
-                canvas.store(x, y, 1, pixel.data());
+                    unassociate_alpha(pixel, channels, source->unassociated_alpha());
             }
+            for (int x = square.x0; x < square.x1; x += simd::kMaxRow)
+                canvas.store(x, y, std::min(simd::kMaxRow, square.x1 - x),
+                             row.data() + std::ptrdiff_t{x - square.x0} * channels);
+        }
         simd::finish_stores();
     });
     return ok;
