@@ -57,6 +57,9 @@ TEST(BlockMachine, VisitsOfAPlaneAtRestWhatIsKnownByHand) {
                 EXPECT_EQ(frame.counts.pixels, along * along) << d << " " << overlap;
                 EXPECT_EQ(frame.counts.segments, segments * segments) << d << " " << overlap;
                 EXPECT_EQ(frame.counts.saturated, 0);
+                EXPECT_EQ(frame.counts.addressed, frame.counts.segments * d * d);
+                EXPECT_EQ(frame.counts.pixel_cycles, frame.counts.pixels);
+                EXPECT_EQ(frame.counts.cracks, 0);
                 for (int j = 0; j < n; ++j)
                     for (int i = 0; i < n; ++i) {
                         const auto at = static_cast<std::size_t>(j * n + i);
@@ -65,6 +68,18 @@ TEST(BlockMachine, VisitsOfAPlaneAtRestWhatIsKnownByHand) {
                         ASSERT_NEAR(frame.addresses[at].y, j + 0.5, 1e-9);
                     }
             }
+}
+
+/// Units share the pixels that a block has in a segment, 64 here; what is found one after the other is made so.
+TEST(BlockMachine, UnitsShareSegments) {
+    BlockMachine machine;
+    machine.overlap = 0;
+    machine.pixel_units = 10;
+    EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.pixel_cycles, 64 * 7);
+    machine.pixel_units = 64;
+    EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.pixel_cycles, 64);
+    machine.addresses = Addressing::repeated;
+    EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.pixel_cycles, 64 * 64);
 }
 
 /// Smaller segments: (d / s)^2 for each block where they divide it.
@@ -544,6 +559,25 @@ TEST(BlockMachine, SurfacesTakeWhatTheirFormulasTake) {
     EXPECT_EQ(cost("plane", {bump}).point, (OperationCounts{1 + 2 + 2 + 5 + 3, 0, 1}));
     bump.enabled = false;
     EXPECT_EQ(cost("plane", {bump}), cost("plane"));
+    // Files: means of four values, three for each coordinate, and where these lie. Weighted, three for each summand more.
+    const std::size_t shapes = surface_names().size();
+    EXPECT_EQ(cost_of({.parts = {{shapes}}}).point, (OperationCounts{11, 0, 0}));
+    EXPECT_EQ(cost_of({.parts = {{0, 0.5}, {shapes, 0.5}}}).point, (OperationCounts{1 + 11 + 2 * 3, 0, 0}));
+    // A height: its mean, where it lies and its scale, along the sphere's normal, which costs as much as its point.
+    const auto& names = surface_names();
+    const auto sphere =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), "sphere") - names.begin());
+    const std::vector<float> texels(16);
+    EXPECT_EQ(cost_of({.parts = {{sphere}}, .heights = std::make_shared<SampledField>(texels, Size{4, 4}, 1)})
+                  .point,
+              (OperationCounts{6 + 6 + 3 + 2 + 1 + 3, 0, 8}));
+    // Sine and cosine of one angle come together.
+    SurfaceText text;
+    text.px = "u*v";
+    text.py = "u/v";
+    text.pz = "sin(u)+sqrt(v)";
+    EXPECT_EQ(cost_of({.parts = {{shapes + 1}}, .formula = parse_surface(text, {1, 0})}).point,
+              (OperationCounts{1, 1, 3}));
 }
 
 /// The attributes of a picture that the operation drape makes of a source of 128 x 128.

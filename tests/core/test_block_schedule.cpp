@@ -214,6 +214,11 @@ TEST(BlockSchedule, WhatMissesATickIsShownLater) {
     const MachineSchedule late = of_ms(40);
     for (std::size_t f = 2; f < S::kFrames; ++f) EXPECT_EQ(late.ticks_late(f), 1) << f;
     EXPECT_EQ(of_ms(32).ticks_late(5), 0);
+    // A screen that takes 105 ms to put out is shown every fourth tick.
+    const MachineSchedule large =
+        schedule_of(machine, counts_of(0, 0, 10), kTwentyProducts, {8, 8}, {1024, 1024});
+    EXPECT_EQ(large.shown_ms(), 132);
+    for (std::size_t f = 1; f < S::kFrames; ++f) EXPECT_EQ(large.ticks_late(f), 3) << f;
     // Processors need no tick: where they take 40 ms, five frames are shown in 200 ms, at the ticks that follow.
     machine.surface_multiplies = 0;
     machine.sort_cycles = 0;
