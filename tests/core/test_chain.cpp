@@ -123,12 +123,26 @@ Link twirl_link(const Size& size, const Settings& settings) {
     return {picture_through(plan, flat_border(size), settings.filter, Output::color), truth};
 }
 
+/// Waves of 50 pixels, as text.
+Link waves_link(const Size& size, const Settings& settings) {
+    FormulaText text;
+    text.u = "x+3*sin(y/8)";
+    text.v = "y+3*sin(x/8)";
+    const PlaneFormula formula = parse_formula(text, {size, size});
+    const auto plan = std::make_shared<const TextPlan>(TextMap(formula, size, size, size), plan_of(settings));
+    const auto truth = [](const Point<Real>& p) -> Point<Real> {
+        return {p.x + 3 * std::sin(p.y / 8), p.y + 3 * std::sin(p.x / 8)};
+    };
+    return {picture_through(plan, flat_border(size), settings.filter, Output::color), truth};
+}
+
 /// How an ST-map is made.
 struct StMapCase {
     double noise = 0;  ///< pixels
     bool v_up = false;
     bool has_holes = false;
     double amount = 1;
+    double spikes = 0;  ///< pixels; of one sample in 128 each way
 };
 
 /// A smooth ST-map as large as its picture, read pixel for pixel.
@@ -147,6 +161,7 @@ Link stmap_link(const Size& size, const Size& source, const StMapCase& how, cons
             auto u =
                 static_cast<float>(0.05 + 0.9 * x + 0.04 * std::sin(4 * y) + noise(random) / source.width);
             auto v = static_cast<float>(0.04 + 0.9 * y - 0.05 * x * y + noise(random) / source.height);
+            if (i % 128 == 22 && j % 128 == 22) u += static_cast<float>(how.spikes / source.width);
             if (how.has_holes && std::hypot(i - 120, j - 90) < 20) u = v = NAN;
             uv.insert(uv.end(), {u, v});
             exact.vertices.push_back({u, how.v_up ? 1 - double{v} : v});
@@ -274,9 +289,6 @@ View view(Projection projection, const Size& size, double fov) {
 View flat(const Size& size, double fov) {
     return view(Projection::rectilinear, size, fov);
 }
-
-View view(Projection projection, const Size& size, double fov);
-View flat(const Size& size, double fov);
 
 /// Chains with ST-maps. Their cubics need some tolerance: what is finer has no block.
 std::vector<ChainCase> stmap_cases() {
@@ -417,6 +429,21 @@ TEST(Chain, HoldsEveryTolerance) {
                 EXPECT_LT(static_cast<double>(found.exact), c.most_exact * static_cast<double>(found.pixels));
             }
         }
+}
+
+// Where the window of a box's middle serves, and that of the middle of a part of the box does not, which needs a bound of its own.
+TEST(Chain, HoldsTheToleranceNextToRoughSamples) {
+    const Size size{512, 512}, plate{400, 400};
+    Settings settings;
+    settings.tol = 0.05;
+    const std::vector<Link> links{stmap_link(size, plate, {.spikes = 8}, settings),
+                                  waves_link(plate, settings)};
+    const Joined joined = joined_of(links);
+    ASSERT_TRUE(joined.picture) << joined.reason;
+    const Findings found = examine(*joined.picture->maps[0].blocks, links);
+    EXPECT_EQ(found.over, 0);
+    EXPECT_LE(found.bound, settings.tol);
+    EXPECT_LT(static_cast<double>(found.exact), 0.5 * static_cast<double>(found.pixels));
 }
 
 // What the outer map rounds is moved by the inner one, here by far more than that rounds itself.

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "anamorph/chain/chain_plan.h"
-#include "anamorph/plan/unlinked.h"
 
 namespace anamorph {
 namespace {
@@ -19,10 +18,8 @@ std::shared_ptr<const MapLink> link_of(const Picture& picture, std::string& reas
         reason = "shows more than its source";
     else if (std::shared_ptr<const MapLink> link = picture.maps[0].blocks->link())
         return link;
-    else if (const auto* const map = dynamic_cast<const Unlinked*>(picture.maps[0].blocks.get()))
-        reason = map->why_unlinked();
     else
-        reason = "has a scheme that does not join";
+        reason = picture.maps[0].blocks->why_unlinked();
     return nullptr;
 }
 

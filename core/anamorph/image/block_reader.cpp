@@ -796,38 +796,9 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
     if (!averages(m_filter)) return body(whole(block), filtering({}));
     // Steps go from source point to source point.
     Range x, y;
-    if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y)) {
-        Jacobian shared;
-        if (m_partial && shares_derivative(block, shared)) return body(whole(block), filtering(shared));
+    if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
         return rows_one_by_one(block, {}, part, row);
-    }
     return for_each_footprint(block, at, part, row, body);
-}
-
-/// Is the map's derivative alike in the outermost of a block's pixels that have source points?
-bool BlockReader::shares_derivative(const Block& block, Jacobian& derivative) {
-    // The first and the last along both diagonals.
-    std::array<Point<int>, 4> outermost{};
-    std::array<int, 4> farthest;
-    farthest.fill(std::numeric_limits<int>::min());
-    for (int j = 0; j < block.box.height(); ++j)
-        for (int i = 0; i < block.box.width(); ++i) {
-            if (m_exact.piece(j)[i] < 0) continue;
-            const std::array along{i + j, i - j, j - i, -i - j};
-            for (std::size_t k = 0; k < 4; ++k)
-                if (along[k] > farthest[k]) farthest[k] = along[k], outermost[k] = {i, j};
-        }
-    if (farthest[0] == std::numeric_limits<int>::min()) return false;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const Jacobian own = m_map.jacobian(block.box.x0 + outermost[k].x + 0.5,
-                                            block.box.y0 + outermost[k].y + 0.5, block.piece);
-        if (k == 0)
-            derivative = own;
-        else if (!alike(derivative.x_i, derivative.y_i, own.x_i, own.y_i) ||
-                 !alike(derivative.x_j, derivative.y_j, own.x_j, own.y_j))
-            return false;
-    }
-    return true;
 }
 
 /// Finds the ranges of the points of a cell that were read in double. False where they are too far away.

@@ -181,7 +181,6 @@ class BlockReader {
     bool ranges_in_double(const Box& cell, Range& x, Range& y) const;
     void read_in_double(const Block& block);
     bool lie_together(const Box& cell) const;
-    bool shares_derivative(const Block& block, Jacobian& derivative);
     bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
     template <class RowPoints>
     Got split_rows(const Filtering& f, int piece, const RowPoints& points, const LevelPoints& x,

@@ -218,7 +218,7 @@ std::shared_ptr<const MapLink> MeshPlan::link() const {
 std::string MeshPlan::why_unlinked() const {
     return joins(m_scheme)
                ? "has a mesh of cells of less than " + std::to_string(CellMap::kLeastPixels) + " pixels"
-               : kUnjoinedScheme;
+               : BlockMap::why_unlinked();
 }
 
 float MeshPlan::folds(double x, double y) const noexcept {

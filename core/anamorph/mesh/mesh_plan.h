@@ -21,12 +21,11 @@
 #include "anamorph/mesh/mesh.h"
 #include "anamorph/plan/block.h"
 #include "anamorph/plan/scheme.h"
-#include "anamorph/plan/unlinked.h"
 
 namespace anamorph {
 
 /// The source points of a warp, in blocks, and where it folds.
-class WarpPlan : public BlockMap, public Unlinked {
+class WarpPlan : public BlockMap {
   public:
     using BlockMap::BlockMap;
 
@@ -40,7 +39,6 @@ class WarpPlan : public BlockMap, public Unlinked {
 constexpr bool joins(WarpScheme scheme) {
     return scheme == WarpScheme::automatic || scheme == WarpScheme::exact;
 }
-inline constexpr const char* kUnjoinedScheme = "has a scheme that does not join";
 
 class ResidualTables;
 

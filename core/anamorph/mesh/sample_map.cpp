@@ -248,8 +248,9 @@ std::optional<Point<Interval>> SampleMap::displacements(const Interval& x, const
     return all;
 }
 
-/// Weights sum to 1, and their magnitudes to 1.6^2 at most (mesh_lattice.h): a sum is no farther from the middle of a range than
-/// 1.28 times that. What the outermost lines go on by makes the range twice as wide, and rounding is next to nothing.
+/// Weights sum to 1, and their magnitudes along an axis to 1.6 at most (mesh_lattice.h). In an outermost cell the map goes on linearly
+/// by the two outermost samples, as both of its slopes are their difference: there they sum to 2 at most. So to 4 at most in all, and a
+/// sum is no farther from the middle of a range than twice that, 1.5 times it beyond; rounding is next to nothing.
 std::optional<Point<Interval>> SampleMap::points_of(const Interval& x, const Interval& y) const {
     const auto moved = displacements(x, y);
     if (!moved) return {};
@@ -266,12 +267,12 @@ std::optional<Point<Interval>> SampleMap::points_of(const Interval& x, const Int
 ///
 /// Rounding, u = 2^-53: the sum 300 u of the displacements' size (mesh_lattice.h, where it is derived), these and the point
 /// itself 16 u of the source's; and what the samples' own points are off, times the magnitudes of weights. The outermost lines go
-/// on by half of a difference, so all that is counted three times.
+/// on by half of a difference, which in a corner is four times the size of the samples at most.
 ///
 /// Slope. On a cell w wide a function changes by 3/2 of the difference of its values at the ends and by each of its slopes there,
-/// over w: slopes are differences over no less than w. Along one axis that is at most 7/2 of the range over w; w is 1/2 at least;
-/// what the outermost lines go on by makes the range twice as wide; and the other axis's weights sum to 1.6 at most. So less
-/// than 24 times the range.
+/// over w: slopes are differences over no less than w. Along one axis that is at most 7/2 of the range over w, which is 1; in the
+/// outermost cells, of 1/2, the map is linear, and its slope the range at most. The other axis's weights sum to 2 at most. So less than
+/// 24 times the range.
 double SampleMap::exact_error(const Interval& x, const Interval& y, double off) const {
     const Size& size = m_lattice->target();
     if (x.lo == x.hi && y.lo == y.hi && off == 0 && x.lo > 0 && y.lo > 0 && x.lo < size.width &&
@@ -288,10 +289,10 @@ double SampleMap::exact_error(const Interval& x, const Interval& y, double off) 
     }
     const Size& source = m_lattice->source();
     const Point<double>& scale = m_lattice->scale();
-    const double displaced = 3 * std::max(magnitude(moved->x), magnitude(moved->y));
+    const double displaced = 4 * std::max(magnitude(moved->x), magnitude(moved->y));
     const double place = std::max(source.width, source.height) + displaced;
     const double rounding =
-        1.4143 * 0x1p-53 * (300 * displaced + 16 * place) + 2.56 * 3 * m_lattice->rounding();
+        1.4143 * 0x1p-53 * (300 * displaced + 16 * place) + 2.56 * 4 * m_lattice->rounding();
     const double slope =
         std::max(scale.x, scale.y) + 24 * std::max(moved->x.hi - moved->x.lo, moved->y.hi - moved->y.lo);
     return (rounding + 2 * slope * off) * rounded_detail::kUp;

@@ -11,9 +11,9 @@
 // (the slopes at 0 and 1 come out as 1 and 4 in place of 0 and 3), which is at most sqrt(3) / 18 < 0.0963. So with p a
 // polynomial of total degree 3 and r what samples are off it, |I[p + r] - p| <= (5/4)^2 max |r| + 0.0963 (|p_30| + |p_03|).
 //
-// That error is no polynomial's, yet Rounded (number/rounded.h) passes it on: it bounds functions by sums of coefficients, which
-// they do not exceed anywhere on a block, and whatever moves a value by no more than that moves what is computed of it by no more
-// than Rounded says.
+// That error is no polynomial's, yet Rounded (number/rounded.h) passes it on. Of a box it knows the range of values at all pixels'
+// centres, and each of its operations says by how much its value there may be moved where its operands are moved by up to their errors;
+// what it adds for the other coefficients of jets makes that larger. So the map is no farther off at any centre than it says.
 #pragma once
 
 #include <concepts>

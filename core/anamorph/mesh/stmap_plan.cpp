@@ -131,7 +131,7 @@ std::shared_ptr<const MapLink> StMapPlan::link() const {
 }
 
 std::string StMapPlan::why_unlinked() const {
-    return joins(m_scheme) ? "has an ST-map that is rough or small" : kUnjoinedScheme;
+    return joins(m_scheme) ? "has an ST-map that is rough or small" : BlockMap::why_unlinked();
 }
 
 /// +1, or -1 where most cells between samples are flipped.

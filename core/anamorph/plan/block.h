@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -199,6 +200,8 @@ class BlockMap {
 
     /// The map as a link of a chain of maps (chain/), planned with any other as one; null where it cannot be.
     virtual std::shared_ptr<const MapLink> link() const { return nullptr; }
+    /// The reason why link() is null, as it follows "it": "has pairs of points".
+    virtual std::string why_unlinked() const { return "has a scheme that does not join"; }
 
   protected:
     /// Cuts `box`, a region of `piece`, into blocks.

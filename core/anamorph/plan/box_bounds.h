@@ -33,7 +33,7 @@ class BoxBounds {
     using Taylor = Point<Jet<double, 4>>;
     using Enclosed = Point<Jet<Interval, 5>>;
 
-    /// A box on one branch of the map. All parts of it are read about its middle.
+    /// A box on one branch of the map. All of it is read with one Local, about its own middle or that of a box around it.
     struct Place {
         Box box;
         Local local;
@@ -48,6 +48,14 @@ class BoxBounds {
 
     Place place_about(const Box& box) const {
         return {box, m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece)};
+    }
+    /// A part of a place that is inside: about its own middle, or as the place is where the part is not inside about that.
+    Place part_of(const Place& place, const Box& part) const {
+        if (part == place.box) return place;
+        const Place own = place_about(part);
+        if constexpr (DirectMap<Map>) return own;
+        const Cover found = m_map.cover(across(part), down(part), m_piece, own.local, m_options.across_seam);
+        return found == Cover::inside ? own : Place{part, place.local};
     }
 
     /// Does every point of the box have a source point on one smooth branch of the map?

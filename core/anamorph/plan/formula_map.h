@@ -59,8 +59,9 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     { map.local_around(a, a, piece) } -> std::same_as<typename Map::Local>;
     /// The source point of a target point; the map takes jets, intervals and Rounded as well.
     { map(a, a, local) } -> std::same_as<Point<double>>;
-    /// Whether pixel centres or whole pixels in the box x, y of a piece have source points; `local` is about its middle. A part of a box
-    /// inside is inside, about its own middle. May one branch run over the seam of a source that closes on itself?
+    /// Whether pixel centres or whole pixels in the box x, y of a piece have source points; `local` is about its middle. Of a
+    /// DirectMap a part of a box inside is inside, about its own middle; of others it may be mixed there. May one branch
+    /// run over the seam of a source that closes on itself?
     { map.cover(x, x, piece, local, /*across_seam=*/true) } -> std::same_as<Cover>;
     /// The piece of the source that a branch leads to.
     { map.source_piece(local) } -> std::same_as<int>;

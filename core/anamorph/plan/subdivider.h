@@ -142,7 +142,7 @@ class Subdivider {
         if (m_polynomials.serves(known, bound))
             place_all_parts(known.box, place, bound, known);
         else
-            settle_quarters(known.box, bound.reach < 0);
+            settle_quarters(known.box, place, bound.reach < 0);
     }
 
     /// Does no part about whose middle blocks are placed (Parts) cross the edges of its quarters? The sides of parts divide
@@ -171,18 +171,18 @@ class Subdivider {
         settle_inside(known.box, place, &known);
     }
     /// Settles the quarters of a box, or its halves where quarters could not pay for their bounds. `kept`:
-    /// none can be culled.
-    void settle_quarters(const Box& box, bool kept) {
+    /// none can be culled. `within`: a place that holds the box.
+    void settle_quarters(const Box& box, const Place& within, bool kept) {
         const Box quarter{box.x0, box.y0, box.x0 + box.width() / 2, box.y0 + box.height() / 2};
         const auto at_once = [&](std::span<const Box> parts) {
-            Place place = m_bounds.place_about(box);
+            Place place = m_bounds.part_of(within, box);
             Known known[simd::kJets];
             m_polynomials.know(parts, place.local, known);
             for (std::size_t i = 0; i < parts.size(); ++i) settle_known(known[i], place);
         };
         const auto one_by_one = [&](const Box& b) {
             if (!kept) return settle(b);
-            Place place = m_bounds.place_about(b);
+            Place place = m_bounds.part_of(within, b);
             settle_inside(b, place);
         };
         if (m_costs.worth_a_bound(quarter))
@@ -197,17 +197,18 @@ class Subdivider {
     void place_all_parts(const Box& box, Place& place, Bound bound, const Known& known) {
         bound.rounding = m_bounds.shared_rounding(box, place);
         for_boxes(box, 4 * kBlockWidth, 4 * kBlockHeight,
-                  [&](const Box& b) { place_parts(b, place.local, bound, known); });
+                  [&](const Box& b) { place_parts(b, place, bound, known); });
     }
     /// Places blocks about the middles of a box's parts.
-    void place_parts(const Box& box, const Local& local, const Bound& bound, const Known& known) {
+    void place_parts(const Box& box, const Place& place, const Bound& bound, const Known& known) {
+        const Local& local = place.local;
         const Parts parts = m_polynomials.parts_of(box, bound);
         if (parts.are == Parts::left) return leave(box);
         const auto for_parts = [&](const Box& within, const auto& body) {
             for_boxes(within, parts.width, parts.height, body);
         };
         const auto renew = [&](const Box& b) {
-            m_costs.worth_a_bound(b) ? settle_quarters(b, true) : leave(b);
+            m_costs.worth_a_bound(b) ? settle_quarters(b, place, true) : leave(b);
         };
         typename Polynomials::InTurn taylors(m_bounds, local, known);
         const auto place_all = [&](const Box& within, const Bound& with) {
