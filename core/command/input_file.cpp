@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "input_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <istream>
@@ -12,7 +13,9 @@ namespace anamorph::command {
 std::string read_all(std::istream& in, const std::string& name, std::size_t most) {
     std::string text;
     char block[1 << 16];
-    while (text.size() <= most && in.read(block, sizeof block).gcount() > 0)
+    while (text.size() <= most &&
+           in.read(block, static_cast<std::streamsize>(std::min(sizeof block, most + 1 - text.size())))
+                   .gcount() > 0)
         text.append(block, static_cast<std::size_t>(in.gcount()));
     if (in.bad()) throw Error("cannot read " + name);
     return text;

@@ -358,6 +358,7 @@ class Command {
         bool any = false;
         for (const EllipseFrame& frame : frames) {
             if (!range.has(frame.number)) continue;
+            if (any && !range.several()) break;  // one page has one frame
             out->add(plotted(frame, m_settings.size, m_settings.drawing.tol));
             any = true;
         }

@@ -204,6 +204,13 @@ class Outlines(Essay):
         self.assertEqual(self.run_here("plotel", "-", data=result.stdout).stdout, svg.replace("frame 1", "frame 2").encode())
         self.output_here("plotel", "two.2", "--frame", "all", "-o", "plot.svg")
         self.assertEqual(sorted(n for n in os.listdir(self.folder) if n.startswith("plot")), ["plot.0001.svg", "plot.0002.svg"])
+        # Of two records with one number the first is drawn.
+        self.write("twice.2", "1 1\n500 500 40 200 300 0\n1 1\n300 300 40 200 300 0\n")
+        self.assertEqual(self.output_here("plotel", "twice.2").count(b"<path"), 1)
+        # Frames of a range with a step.
+        self.write("many.2", "".join("1 %d\n500 500 40 200 300 0\n" % number for number in range(1, 7)))
+        self.output_here("plotel", "many.2", "--frame", "2-5x2", "-o", "step.svg")
+        self.assertEqual(sorted(n for n in os.listdir(self.folder) if n.startswith("step")), ["step.0002.svg", "step.0004.svg"])
 
     def test_a_script_of_the_examples(self):
         walker = os.environ["ANAMORPH_EXAMPLES"] + "/walker.nudes"

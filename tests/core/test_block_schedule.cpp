@@ -141,16 +141,17 @@ TEST(BlockSchedule, NoStageWorksMoreThanThereIsTime) {
 
 /// Frames that are followed one by one come to wait what the table says, and to leave the machine once a period.
 TEST(BlockSchedule, FramesComeToTheTable) {
-    for (const auto& [host, blocks, segments, pixels] : {std::array{1000, 100, 200, 50000},
-                                                         {200000, 100, 200, 50000},
-                                                         {1000, 9000, 200, 50000},
-                                                         {1000, 100, 60000, 50000},
-                                                         {1000, 2000, 4000, 20000}}) {
+    for (const auto& [host, blocks, segments, pixels, width] : {std::array{1000, 100, 200, 50000, 150},
+                                                                {200000, 100, 200, 50000, 150},
+                                                                {1000, 9000, 200, 50000, 150},
+                                                                {1000, 100, 60000, 50000, 150},
+                                                                {1000, 2000, 4000, 20000, 150},
+                                                                {1000, 100, 200, 50000, 2000}}) {
         BlockMachine machine;
         machine.host_cycles = host;
         machine.frame_clock_ms = 0;
         const MachineSchedule s = schedule_of(machine, counts_of(blocks, segments, pixels), kTwentyProducts,
-                                              {150, 100}, {150, 100});
+                                              {width, 100}, {150, 100});
         const std::size_t last = S::kFrames - 1;
         const double period = s.bottleneck().cycles;
         for (std::size_t k = 0; k < S::kStages; ++k) {
@@ -189,6 +190,7 @@ TEST(BlockSchedule, FourBlocksByHand) {
     machine.hidden = Hiding::z_buffer;
     EXPECT_EQ(schedule().stages[S::processors].cycles, 2 * (41 + 48));
     EXPECT_EQ(schedule().stages[S::pixels].bytes_read, 256 * (12 + 2));
+    EXPECT_EQ(schedule().stages[S::pixels].bytes_written, 256 * (3 + 2));
     machine.surface_multiplies = 20;
     EXPECT_EQ(schedule().stages[S::processors].cycles, 2 * (20 + 27 + 32));
     machine.texel_bits = 12;

@@ -27,10 +27,10 @@ class Tables(unittest.TestCase):
     def check(self, table):
         names = list(self.rows[0])
         self.assertEqual([table.GetColumnName(i) for i in range(table.GetNumberOfColumns())], names)
-        self.assertEqual(table.GetNumberOfRows(), 5)
+        self.assertEqual(table.GetNumberOfRows(), 6)
         for name in names:
             column = table.GetColumnByName(name)
-            values = [column.GetValue(i) for i in range(5)]
+            values = [column.GetValue(i) for i in range(6)]
             if name == "stage":
                 self.assertEqual(values, [row[name] for row in self.rows])
             else:

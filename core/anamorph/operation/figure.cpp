@@ -548,7 +548,7 @@ class Figures final : public Pictures {
 
 /// Pyramids of all textures.
 std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Film& film,
-                                          const std::string& missing) {
+                                          const FigureRequest& request) {
     if (film.images().empty()) throw Error("output", "mips", "must be picture, as the script has no texture");
     if (input.values.given("overscan"))
         throw Error("overscan", printable(input.values.text("overscan")),
@@ -556,7 +556,7 @@ std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Fil
     std::vector<MipTexture> textures;
     for (const std::string& name : film.images()) {
         const std::string key = kTextureKey + name;
-        MipTexture texture{name, {}, maps_of(name, input)};
+        MipTexture texture{name, {}, request.maps[textures.size()]};
         if (texture.maps)
             texture.size = texture.maps->size(0);
         else if (std::find(input.missing.begin(), input.missing.end(), key) == input.missing.end()) {
@@ -569,7 +569,7 @@ std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Fil
         textures.push_back(std::move(texture));
     }
     Attributes says;
-    if (!missing.empty()) says.push_back({"anamorph:missing_textures", missing});
+    if (!request.missing.empty()) says.push_back({"anamorph:missing_textures", request.missing});
     return mip_pictures(std::move(textures), says);
 }
 
@@ -584,7 +584,7 @@ std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
     }
     for (const std::string& key : input.missing)
         request.missing += (request.missing.empty() ? "" : ", ") + key.substr(key.find('/') + 1);
-    if (are_mips(input.values)) return read_mips(input, *film, request.missing);
+    if (are_mips(input.values)) return read_mips(input, *film, request);
     return std::make_unique<Figures>(std::move(request), film, frame);
 }
 

@@ -10,7 +10,7 @@
 // minor axis and v that a quarter of a turn against the clock from it.
 //
 // What is not known of the originals is ours: numbers are rounded to the nearest (theirs lose what is behind the
-// point); 0 < phi <= 1800; 0 <= begin < end <= 3600, so that an arc over 3600 is two; one shorter than half a tenth of a degree may
+// point); 0 <= phi <= 1800; 0 <= begin < end <= 3600, so that an arc over 3600 is two; one shorter than half a tenth of a degree may
 // be left out; an ellipse that is hidden as a whole has the arc 0 3600; VISIB's ellipses have no arcs; every ellipsoid has its
 // ellipse, in its place (HIDE leaves out those that lie wholly at z < 0); after the last frame the text ends. As there, there is no
 // perspective.
