@@ -78,12 +78,8 @@ struct NamedFiles {
 NamedFiles files_of(const Operation& operation, const ParameterValues& values) {
     NamedFiles named;
     SideFiles& files = named.files;
-    for (const Parameter& p : *operation.parameters) {
-        const bool names_a_file = p.type == ParameterType::image || p.type == ParameterType::file;
-        if (names_a_file && values.given(p.name)) files[p.name] = {values.text(p.name), ""};
-    }
-    if (operation.named)
-        for (const LinkedFile& file : operation.named(values)) files[file.key] = {file.name, "", file.image};
+    for (const LinkedFile& file : operation.named_files(values))
+        files[file.key] = {file.name, "", file.image};
     if (operation.linked) named.linked = operation.linked(values, files, KeyedFileReader(files));
     for (const LinkedFile& file : named.linked) files[file.key] = {file.name, ""};
     return named;
@@ -253,7 +249,6 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
         open.add(source_of(*src), src->spec());
     }
     const Attributes lenses = find_lenses(operation, values, open.shown, open.known);
-    const bool has_source = !open.known.empty();
     std::vector<std::unique_ptr<Source>>& images = open.images;
     std::vector<ImageSpec>& specs = open.specs;
     const std::vector<std::string> missing =
@@ -261,14 +256,13 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
     const std::unique_ptr<const Pictures> pictures =
         operation.read({values, open.known, named.files, KeyedFileReader(named.files), missing});
     const PictureRequest request = *pictures->picture(0, 0);
-    const ImageSpec first = has_source ? upright(specs[0]) : ImageSpec();
     const std::string space = filtering_space(values, request.pixels);
     // The pixels that a cache lends are of a type of its own.
     const bool stored = moves_stored(request, specs, space) && *request.moves < sources.size() &&
                         sources[*request.moves]->localpixels() &&
                         specs[*request.moves].channelformats.empty();
     if (stored) images[*request.moves] = std::make_unique<BufferSource>(*sources[*request.moves], true);
-    const ImageSpec spec = picture_spec(has_source ? &first : nullptr, request, stored);
+    const ImageSpec spec = picture_spec(open.shown.empty() ? nullptr : &open.shown[0], request, stored);
     const ParallelFor parallel_for = default_parallel_for(nthreads);
     const std::unique_ptr<const SolvedPicture> picture = request.solve();
     const Attributes reached = picture->reached(parallel_for);

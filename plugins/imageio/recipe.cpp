@@ -95,19 +95,12 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
     const auto take = [&](const std::vector<Assignment>& place, const fs::path& folder) {
         ParameterValues own(*operation.parameters);
         own.assign(place);
-        const auto enter = [&](const std::string& key, const std::string& file, bool image) {
+        for (const auto& [key, file, image] : operation.named_files(own)) {
             const bool in_memory = has_extension(file, kBufferExtension);
             const std::string path = (folder / std::string(base_of(file))).string();
             recipe.files[key] = {in_memory ? file : without_detours(path) + file.substr(base_of(file).size()),
                                  "", image};
-        };
-        for (const Parameter& p : *operation.parameters) {
-            if ((p.type != ParameterType::image && p.type != ParameterType::file) || !own.given(p.name))
-                continue;
-            enter(p.name, own.text(p.name), p.type == ParameterType::image);
         }
-        if (operation.named)
-            for (const LinkedFile& file : operation.named(own)) enter(file.key, file.name, file.image);
         recipe.values.assign(place);
     };
     // A name may be that of the file that is drawn.
@@ -132,13 +125,12 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
     if (!first.empty() && !recipe.files.count(first))
         recipe.files[first] = {parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1), "",
                                !operation.sources.empty()};
-    for (auto& [key, file] : recipe.files)
-        if (key == first && operation.gathers(file.name)) file.image = false;
+    if (!operation.gathering_file(recipe.files).empty()) recipe.files.at(first).image = false;
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
     if (operation.reads_faces) find_faces(recipe, first);
-    const SideFiles known = recipe.files;
     if (operation.linked)
-        for (const LinkedFile& file : operation.linked(recipe.values, known, KeyedFileReader(known))) {
+        for (const LinkedFile& file :
+             operation.linked(recipe.values, recipe.files, KeyedFileReader(recipe.files))) {
             check_file_name(file.key, file.name);
             recipe.files[file.key] = {file.name, "", file.image};
             if (file.image) recipe.linked_images.push_back(file.key);

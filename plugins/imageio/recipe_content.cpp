@@ -171,12 +171,14 @@ class RecipeContent final : public Content {
         std::vector<ImageSpec> specs, shown;
         std::vector<SourceImage> known;
         std::string identity;
-        for (const SideFile& file : sources_of(recipe)) {
+        const bool is_gathered = gathers(recipe);
+        const std::vector<SideFile> sources = sources_of(recipe);
+        for (const SideFile& file : sources) {
             const int own = part_in(file, opening, part, parts);
             images.push_back(open_source(file, opening, own));
             const OpenSource& open = images.back();
             specs.push_back(open.faces ? open.faces->spec() : open.image->spec());
-            if (gathers(recipe)) specs.back().attribute("Orientation", 1);
+            if (is_gathered) specs.back().attribute("Orientation", 1);
             shown.push_back(open.faces ? specs.back() : upright(specs.back()));
             known.push_back(open.faces ? open.faces->known() : source_image(shown.back()));
             identity += file.identity + std::to_string(own) + "\n";
@@ -185,9 +187,11 @@ class RecipeContent final : public Content {
         m_lenses = find_lenses(*recipe.operation, values, shown, known);
         if (parts > 1) m_part = std::to_string(part) + " of " + std::to_string(parts);
         std::vector<std::string> missing;
-        if (gathers(recipe)) identity += recipe.files.at(recipe.operation->main_file).identity;
+        if (is_gathered) identity += recipe.files.at(recipe.operation->main_file).identity;
         for (const std::string& key : recipe.linked_images) {
-            if (gathers(recipe)) break;
+            // One file may be several of the images that are gathered, each cut in its own way.
+            identity += key + "\n";
+            if (is_gathered) continue;
             const SideFile& file = recipe.files.at(key);
             identity += file.identity;
             images.push_back(open_or_none(file, opening, part, parts));
@@ -214,7 +218,7 @@ class RecipeContent final : public Content {
         if (!m_joined && m_moves_channels) {
             std::vector<OpenSource> again;
             for (std::size_t i = 0; i < known.size(); ++i)
-                again.push_back(open_source(sources_of(recipe)[i], opening, images[i].part));
+                again.push_back(open_source(sources[i], opening, images[i].part));
             make_stored_stacks(again, of_sources, identity);
         }
         // What is wrong with a picture is said when it is opened.

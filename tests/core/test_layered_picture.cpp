@@ -100,15 +100,16 @@ class Layers : public testing::Test {
                 image.at(i % kWide, i / kWide, 3) = alpha;
             }
     }
-    LayeredPicture picture(Layering layering, bool weighted) const {
+    LayeredPicture picture(Layering layering, bool weighted, const Size& size = {kWide, kHigh}) const {
         LayeredPicture picture;
         picture.layering = layering;
         picture.alpha = 3;
-        const Chart chart(Projection::rectilinear, kWide, kHigh, 60);
+        const Chart chart(Projection::rectilinear, kWide, kHigh, 60),
+            target(Projection::rectilinear, size.width, size.height, 60);
         ReprojectOptions options;
         options.filter = Filter::nearest;
         for (int i = 0; i < 3; ++i) {
-            PictureLayer layer{reprojected_picture(Panorama(chart, chart), options)};
+            PictureLayer layer{reprojected_picture(Panorama(chart, target), options)};
             layer.picture.maps.front().layers.front().source = i;
             if (weighted)
                 layer.weights = [i](const Box& box, float* to, const ParallelFor&) {
@@ -125,13 +126,14 @@ class Layers : public testing::Test {
 
     Image drawn(const LayeredPicture& picture, const Box& box, int channels) const {
         std::vector<MemorySource> sources;
-        for (const Image& image : m_images) sources.emplace_back(image.view());
+        for (const Image& image : m_images) sources.emplace_back(image.view(), m_unassociated);
         Image to(box.width(), box.height(), channels);
         EXPECT_TRUE(picture.draw({&sources[0], &sources[1], &sources[2]}, box, to.view(), serial_for));
         return to;
     }
 
     std::vector<Image> m_images;
+    int m_unassociated = -1;  ///< the channel of alpha where colours are not multiplied by it
 };
 
 TEST_F(Layers, AreMixedAsTheirFormulaSays) {
@@ -166,9 +168,8 @@ TEST_F(Layers, HaveTheSameBitsInAnyBox) {
     for (int y = 3; y < 16; ++y)
         for (int x = 5; x < 20; ++x)
             for (int c = 0; c < 4; ++c) ASSERT_EQ(all.at(x, y, c), some.at(x - 5, y - 3, c));
-    picture.shows = LayeredPicture::Shows::colors;
     Image colors = drawn(picture, {0, 0, kWide, kHigh}, 3);
-    picture.shows = LayeredPicture::Shows::alpha;
+    picture.shows_alpha = true;
     Image alpha = drawn(picture, {0, 0, kWide, kHigh}, 1);
     for (int y = 0; y < kHigh; ++y)
         for (int x = 0; x < kWide; ++x) {
@@ -177,12 +178,48 @@ TEST_F(Layers, HaveTheSameBitsInAnyBox) {
         }
 }
 
+// A box of more pixels than are mixed at a time.
+TEST_F(Layers, HaveTheSameBitsInALargeBox) {
+    constexpr int kLargeWidth = 700, kLargeHeight = 500;
+    const LayeredPicture picture = this->picture(Layering::over, true, {kLargeWidth, kLargeHeight});
+    const Box middle{13, 360, 690, 390};  // 2^18 pixels end in row 374
+    Image all = drawn(picture, {0, 0, kLargeWidth, kLargeHeight}, 4), some = drawn(picture, middle, 4);
+    for (int y = middle.y0; y < middle.y1; ++y)
+        for (int x = middle.x0; x < middle.x1; ++x)
+            for (int c = 0; c < 4; ++c)
+                ASSERT_EQ(all.at(x, y, c), some.at(x - middle.x0, y - middle.y0, c)) << x << " " << y;
+}
+
 TEST_F(Layers, InfinityBelowIsNotSeen) {
     for (int c = 0; c < 3; ++c) m_images[0].at(1, 0, c) = HUGE_VALF;
     m_images[0].at(1, 0, 3) = 1;
     for (int c = 0; c < 4; ++c) m_images[2].at(1, 0, c) = c == 3 ? 1.0f : 0.25f;
     Image got = drawn(picture(Layering::over, false), {0, 0, kWide, kHigh}, 4);
     EXPECT_EQ(got.at(1, 0, 0), 0.25f);
+}
+
+TEST_F(Layers, ColorsThatAreNotMultipliedAreWeighedByAlpha) {
+    m_unassociated = 3;
+    Image got = drawn(picture(Layering::mean, true), {0, 0, kWide, kHigh}, 4);
+    for (int y = 0; y < kHigh; ++y)
+        for (int x = 0; x < kWide; ++x) {
+            double sum = 0, all = 0;
+            for (int i = 0; i < 3; ++i) {
+                Image& image = m_images[static_cast<std::size_t>(i)];
+                const double by_alpha = double(weight(x, y, i)) * image.at(x, y, 3);
+                sum += by_alpha * image.at(x, y, 1);
+                all += by_alpha;
+            }
+            ASSERT_NEAR(got.at(x, y, 1), all > 0 ? sum / all : 0, 2e-6) << x << " " << y;
+        }
+}
+
+TEST_F(Layers, ColorsAreMultipliedInAllSourcesOrInNone) {
+    const LayeredPicture layers = picture(Layering::over, false);
+    const MemorySource one(static_cast<const Image&>(m_images[0]).view()),
+        other(static_cast<const Image&>(m_images[1]).view(), 3);
+    Image to(kWide, kHigh, 4);
+    EXPECT_THROW(layers.draw({&one, &other, &one}, {0, 0, kWide, kHigh}, to.view(), serial_for), Error);
 }
 
 TEST_F(Layers, AMissingSourceIsAnError) {

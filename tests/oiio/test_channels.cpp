@@ -270,6 +270,25 @@ TEST_F(IdsAmongColors, KeepTheirBits) {
     EXPECT_EQ(ids_of("out.exr"), ids_of("half.exr.map?u=x+2.25&v=y"));
 }
 
+// Of two fisheyes that are mixed an id is that of the lens that counts more, and a project's crop is a part of its whole.
+TEST_F(IdsAmongColors, OfFisheyesAndCroppedProjectsKeepTheirBits) {
+    write("half.exr", TypeDesc::HALF, 0, kWidth / 2);
+    const std::string view =
+        "half.exr.pano?from=dual_fisheye&srcfov=200&to=equirectangular&size=60x30&seam=20";
+    const std::vector<unsigned> mixed = ids_of(view), nearest = ids_of(view + "&filter=nearest");
+    for (const unsigned id : mixed) ASSERT_TRUE(id >= id_at(0, 0) && id < id_at(0, kWidth / 2)) << id;
+    EXPECT_EQ(mixed, nearest);
+    const std::string project = "p f2 w64 h32 v360 S10,50,4,30\ni w" + std::to_string(kWidth) + " h" +
+                                std::to_string(kWidth / 2) + " f0 v120 y0 p0 r0 n\"half.exr\"\n";
+    write_text("part.pto", project);
+    const std::vector<unsigned> part = ids_of("part.pto"), whole = ids_of("part.pto?size=64x32");
+    ASSERT_EQ(part.size(), 40u * 26);
+    ASSERT_EQ(whole.size(), 64u * 32);
+    EXPECT_NE(part, std::vector<unsigned>(part.size()));
+    for (std::size_t y = 0; y < 26; ++y)
+        for (std::size_t x = 0; x < 40; ++x) ASSERT_EQ(part[y * 40 + x], whole[(y + 4) * 64 + x + 10]);
+}
+
 // Where pictures are blended, ids are those of the picture that counts most.
 TEST_F(IdsAmongColors, OfMorphsAreOfTheGreaterWeight) {
     write("a.exr", TypeDesc::HALF);
@@ -351,6 +370,17 @@ TEST_F(IdsAmongColors, OfDrapesAreOfWhatIsSeenInTheMiddle) {
     for (std::size_t i = 0; i < bare.size(); ++i) ASSERT_EQ(bare[i] != 0, seen[i] != 0) << i;
     for (const std::string keys : {"", "&shading=phong", "&alpha=1", "&filter=pyramid"})
         EXPECT_EQ(ids_of(drape + keys), bare) << keys;
+    // The machine of 1987 mixes none either, whatever their type.
+    ASSERT_EQ(run("oiiotool a.exr -d float -o floats.exr").status, 0);
+    const std::vector<float> all = read_floats("floats.exr"),
+                             by_blocks = read_floats(
+                                 "v.drape?src=floats.exr&scheme=hardware&size=40x24"
+                                 "&surface=cylinder&angle=120&data_channels=id");
+    for (std::size_t i = 3; i < by_blocks.size(); i += 4) {
+        bool is_there = by_blocks[i] == 0;
+        for (std::size_t k = 3; k < all.size() && !is_there; k += 4) is_there = by_blocks[i] == all[k];
+        ASSERT_TRUE(is_there) << i;
+    }
     // With pictures on the far side and behind, in float: as near as that has them.
     write("small.exr", TypeDesc::HALF);
     const auto float_ids = [&](const std::string& keys) {

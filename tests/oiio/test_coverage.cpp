@@ -237,6 +237,22 @@ TEST_F(Coverage, IsWhatTheFileHasOfParts) {
     EXPECT_NEAR(sum, 46 * 41, 0.1 * 46 * 41);
 }
 
+// An image of a project is cut out of what its file has.
+TEST_F(Coverage, IsWhatTheFileHasOfProjects) {
+    write_framed("cut.exr", {31, 77, 12, 53});
+    write_text("cut.pto", R"(p f0 w120 h80 v60 E0 R0 n"TIFF_m c:NONE"
+i w120 h80 f0 v60 r0 p0 y0 a0 b0 c0 d0 e0 g0 t0 S10,110,5,75 n"cut.exr"
+)");
+    const std::vector<float> all = read_floats("cut.pto?filter=bilinear");
+    ASSERT_EQ(all.size(), std::size_t{4 * 120 * 80});
+    double sum = 0;
+    for (std::size_t i = 0; i < all.size(); i += 4) {
+        ASSERT_NEAR(all[i + 3], all[i], 1e-5) << i / 4;
+        sum += static_cast<double>(all[i]);
+    }
+    EXPECT_NEAR(sum, 46 * 41, 0.1 * 46 * 41);
+}
+
 // The chain is drawn from the first source, and covered by it.
 TEST_F(Coverage, GoesThroughChains) {
     const std::string inner = "(v.lens?lens=3de4:k1=-0.3&src=%s)",

@@ -261,9 +261,9 @@ class Layers(PictureTest):
 
     PANORAMA = (2, 512, 256, 360)
 
-    def project(self, crops=(None, None, None), alphas=(None, None, None), more=""):
+    def project(self, crops=(None, None, None), alphas=(None, None, None), more="", kinds=((0, 80), (3, 130), (0, 70))):
         images = []
-        for i, (f, fov, y, p, r) in enumerate(((0, 80, -20, 5, 3), (3, 130, 15, -10, -20), (0, 70, 40, 0, 0))):
+        for i, ((f, fov), (y, p, r)) in enumerate(zip(kinds, ((-20, 5, 3), (15, -10, -20), (40, 0, 0)))):
             name = write_coordinates(400, 300, 0.3 + 0.2 * i, alphas[i])
             images.append(image(name, f, 400, 300, fov, y, p, r, crop=crops[i]))
         return write_project(self.PANORAMA, images, more), images
@@ -292,13 +292,27 @@ class Layers(PictureTest):
             self.assertGreater(pixels[..., 3][np.any(inside, axis=0)].min(), 0.9999)
 
     def edge_distance(self, made, x, y):
+        """The distance from the edges of an image and of its crop, and that of their middle. A cylinder of 360 degrees has no sides."""
         left, right, top, bottom = made["S"] or (0, made["w"], 0, made["h"])
-        return np.minimum.reduce([x - left, right - x, y - top, bottom - y]), min(right - left, bottom - top) / 2
+        circle = []
+        if made["S"] and made["f"] == 2:
+            circle = [min(right - left, bottom - top) / 2 - np.hypot(x - (left + right) / 2, y - (top + bottom) / 2)]
+        left, right, top, bottom = max(left, 0), min(right, made["w"]), max(top, 0), min(bottom, made["h"])
+        if made["f"] == 1 and made["v"] == 360:
+            return np.minimum(y - top, bottom - y), (bottom - top) / 2
+        return np.minimum.reduce(circle + [x - left, right - x, y - top, bottom - y]), min(right - left, bottom - top) / 2
 
     def test_blend_and_feather(self):
-        project, images = self.project((None, (20, 380, 10, 290), None))
+        self.check_weights(self.project((None, (20, 380, 10, 290), None)))
+        # A circle that the image cuts, and an image that goes all around.
+        self.check_weights(self.project((None, (-20, 380, -60, 340), None), kinds=((0, 80), (2, 130), (1, 360))))
+
+    def check_weights(self, made_project):
+        project, images = made_project
         places = self.places(images)
-        clear = np.all([shown(made, x, y, 1) | ~shown(made, x, y, -1) for made, (x, y) in zip(images, places)], axis=0)
+        # At the rim of a circle one of four texels may be cut that lies 1.42 pixels away, and beside straight edges 1.
+        near = 1.5 if any(made["f"] == 2 for made in images) else 1
+        clear = np.all([shown(made, x, y, near) | ~shown(made, x, y, -near) for made, (x, y) in zip(images, places)], axis=0)
         for layers, feather in (("blend", None), ("blend", 30), ("blend", 0), ("order", 40)):
             total, sums, through = 0.0, 0.0, 1.0
             for made, (x, y) in reversed(list(zip(images, places))):
@@ -319,6 +333,27 @@ class Layers(PictureTest):
             expected = sums[where] / total[where][..., None]
             self.assertLess(np.abs(pixels[where][..., :3] - expected).max(), 3e-6, f"{layers} {feather}")
             self.assertGreater(pixels[..., 3][where].min(), 0.9999)
+
+    def test_weights_are_of_the_pixel_whatever_is_drawn_beside_it(self):
+        """Faces of a layout are those that are drawn alone, and what overscan adds moves nothing."""
+        project, _ = self.project()
+        for keys, face, row, column in (("layers=blend", "front", 64, 64), ("layers=blend", "right", 0, 0), ("image=0", "front", 64, 64)):
+            whole = ours(project, keys, "to=cubemap3x2", "size=192")
+            alone = ours(project, keys, "to=cubemap3x2", "size=64", f"face={face}")
+            self.assertGreater((alone[..., 3] > 0).sum(), 300, face)
+            self.assertLess(np.abs(whole[row:row + 64, column:column + 64] - alone).max(), 1e-4, face)
+        view = ("layers=blend", "to=rectilinear", "fov=70", "size=60x40")
+        self.assertLess(np.abs(ours(project, *view, "overscan=9x5")[5:-5, 9:-9] - ours(project, *view)).max(), 1e-4)
+
+    def test_images_of_one_file_are_cut_each_by_its_own(self):
+        name = write_coordinates(400, 300)
+        made = [image(name, 0, 400, 300, 80, crop=crop) for crop in ((0, 200, 0, 300), (200, 400, 0, 300))]
+        project = write_project(self.PANORAMA, made)
+        for number in (0, 1, 0):
+            pixels = ours(project, f"image={number}")
+            there = pixels[..., 3] > 0.999
+            self.assertGreater(there.sum(), 1000)
+            self.assertTrue(((points(pixels)[0][there] < 200) == (number == 0)).all(), number)
 
     def test_alpha_and_masks_show_what_is_below(self):
         hole = np.ones((300, 400))

@@ -66,6 +66,13 @@ def faces_rays(x, y):
     return [unit(1, y, -x), unit(-1, y, x), unit(x, -1, y), unit(x, 1, -y), unit(x, y, 1), unit(-x, y, -1)]
 
 
+def grid_rays(side):
+    """The rays of a layout of 3 x 2 faces, cubemap3x2."""
+    x, y = middles(side, side)
+    faces = faces_rays(2 * x / side - 1, 2 * y / side - 1)
+    return np.vstack([np.hstack(faces[:3]), np.hstack(faces[3:])])
+
+
 class Pair:
     """Two fisheyes of `fov` degrees, whose circles end `padding` pixels within their pictures."""
 
@@ -112,7 +119,8 @@ def places_of_pair(name, beside):
 
 LOOKS = {"to=equirectangular&size=200x100": lambda: panorama_rays(200, 100),
          "to=rectilinear&fov=110&size=120x90": lambda: photo_rays(120, 90, 110),
-         "to=rectilinear&fov=90&size=60x40&overscan=10": lambda: photo_rays(60, 40, 90, beyond=10)}
+         "to=rectilinear&fov=90&size=60x40&overscan=10": lambda: photo_rays(60, 40, 90, beyond=10),
+         "to=cubemap3x2&size=120": lambda: grid_rays(40)}
 PAIRS = [Pair(195), Pair(200, seam=8), Pair(200, seam=360), Pair(180, seam=10), Pair(170, front=(3, 2, 1)),
          Pair(210, 20, (2, -1, 90), (-3, 1.5, -90), (20, 10, -5), 12), Pair(190, 8, back=(4, 2, 1), seam=360)]
 
@@ -167,11 +175,12 @@ class FisheyePair(unittest.TestCase):
         """All angles 0 and seam=0: the same picture as without these keys, but for what is next to the seam."""
         random = np.random.default_rng(SEED + 1)
         write("plain.exr", random.uniform(0.2, 1, (SIDE, 2 * SIDE, 3)))
-        view = "plain.exr.pano?from=dual_fisheye&srcfov=200&to=equirectangular&size=200x100&filter=bilinear&tol=0.00001"
-        before, after = read(view), read(view + "&front_yaw=0")
         x, _ = middles(200, 100)
         away = np.minimum(np.abs(x - 50), np.abs(x - 150)) > 2
-        self.assertLess(np.abs(before - after)[away].max(), 2e-4)
+        for keys in ("", "&pixels=centers", "&pixels=centers&srcpadding=7"):
+            view = "plain.exr.pano?from=dual_fisheye&srcfov=200&to=equirectangular&size=200x100&filter=bilinear&tol=0.00001" + keys
+            before, after = read(view), read(view + "&front_yaw=0")
+            self.assertLess(np.abs(before - after)[away].max(), 2e-4, keys)
 
     def test_films_and_open_shutters(self):
         places_of_pair("film.exr", True)

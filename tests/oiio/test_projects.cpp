@@ -44,6 +44,9 @@ TEST_F(Projects, EveryHostReadsOnePicture) {
     EXPECT_EQ(says("two.pto?image=1", "anamorph:from"), "fisheye (image 1 of a project of 2)");
     EXPECT_EQ(says("two.pto", "anamorph:not_applied"), "");
     EXPECT_EQ(read_floats("two.pto").size(), 128u * 64 * 3);
+    // A width alone has the height that the panorama's shape gives it.
+    write_text("narrow.pto", "p f2 w90 h80 v150\n" + kLeft);
+    EXPECT_EQ(read_floats("narrow.pto?size=45").size(), 45u * 40 * 3);
 }
 
 TEST_F(Projects, ARewrittenOneIsReadAgain) {
@@ -104,6 +107,19 @@ TEST_F(Projects, AreFilmsAndParts) {
     EXPECT_EQ(read_floats(film + "&frame=2"),
               read_floats("x.pano?src=two.pto&to=rectilinear&fov=70&size=40x30&yaw=30"));
     EXPECT_EQ(read_floats("x.pano?src=two.pto&mip=1&size=64x32", 1).size(), 32u * 16 * 3);
+    EXPECT_EQ(read_floats("two.pto?frames=2"), read_floats("two.pto"));
+    // What is refused as a key is refused as a key frame.
+    for (const std::string name : {"srcyaw", "seam"}) {
+        write_text("refused.json", R"({"keys": {")" + name + R"(": [[0, 0], [2, 30]]}})");
+        EXPECT_THAT(open_error("two.pto.pano?keys=refused.json"),
+                    AllOf(HasSubstr(name + "="), HasSubstr("must not be given with a project of Hugin")));
+    }
+    write_text("feather.json", R"({"keys": {"feather": [[0, 1], [2, 30]]}})");
+    EXPECT_FALSE(read_floats("two.pto?layers=blend&keys=feather.json&frame=1").empty());
+    EXPECT_THAT(open_error("two.pto?image=0&keys=feather.json"),
+                HasSubstr("must not be given with image, of which there is one"));
+    EXPECT_THAT(open_error("left.exr.pano?from=rectilinear&keys=feather.json"),
+                AllOf(HasSubstr("feather="), HasSubstr("must be given together with a project")));
     // Of one that is not cropped a shutter may be open, and a chain is joined.
     EXPECT_FALSE(
         read_floats("x.pano?src=two.pto&image=0&shutter=2&samples=3&keys=keys.json&frame=1").empty());
@@ -193,6 +209,10 @@ TEST_F(Projects, SayWhatIsWrongWithThem) {
     write_panorama("gray.exr", 64, 48, OIIO::TypeFloat, 1);
     EXPECT_THAT(error_of(kPanorama + kLeft + "i w64 h48 f0 v80 n\"gray.exr\""),
                 HasSubstr("image 1 (gray.exr) has 1 channels and image 0 (left.exr) 3: must be the same"));
+    write_image(ImageBuf("left.exr"), "left.jpg");
+    EXPECT_THAT(error_of(kPanorama + kLeft + "i w64 h48 f0 v80 n\"left.jpg\""),
+                AllOf(HasSubstr("image 1 (left.jpg) is in color space \"sRGB\" and image 0 (left.exr)"),
+                      HasSubstr("must be the same, or colorspace be given")));
     // It cannot be made of itself.
     EXPECT_THAT(error_of(kPanorama + "i w128 h64 f4 v360 n\"bad.pto\""),
                 HasSubstr("recipes read each other"));

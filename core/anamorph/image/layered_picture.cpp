@@ -51,8 +51,7 @@ class Mixture {
         for (std::size_t i = 0; i < m_width; ++i) {
             finish(static_cast<std::size_t>(row) * m_width + i, pixel.data());
             std::byte* to = view.at(static_cast<std::ptrdiff_t>(i), static_cast<std::ptrdiff_t>(row));
-            using enum LayeredPicture::Shows;
-            if (m_picture.shows == alpha) {
+            if (m_picture.shows_alpha) {
                 store_channel(pixel[alpha_channel()], to, view.type);
                 continue;
             }

@@ -31,8 +31,8 @@ struct LayeredPicture {
     Layering layering = Layering::over;
     int alpha =
         -1;  ///< the channel of alpha of all sources, whether their colours are multiplied by it or not
-    /// What is drawn: all channels, those without alpha, which is then the last one, or alpha alone.
-    enum class Shows { all, colors, alpha } shows = Shows::all;
+    bool shows_alpha =
+        false;  ///< is alpha drawn alone, in place of the first channels, as many as a view has?
 
     /// Draws the pixels of `box` to `view`, as Picture::draw() does. Throws Error also where some sources have colours that are
     /// multiplied by alpha and others have not.

@@ -17,15 +17,16 @@ int first_right_of(double x, int x0, int x1) noexcept {
     return static_cast<int>(std::clamp(std::ceil(x - 0.5), double(x0), double(x1)));
 }
 
-/// Turns over the texels of a row that lie right of each edge that crosses it: what is turned over an odd number of times is inside.
-void turn_over(const std::vector<Point<double>>& polygon, int y, int x0, int x1,
-               unsigned char* inside) noexcept {
+/// Marks the first of the texels of a row that lie right of each edge that crosses it, in the second bit: what has an odd number of
+/// edges on its left is inside.
+void mark_edges(const std::vector<Point<double>>& polygon, int y, int x0, int x1,
+                unsigned char* edges) noexcept {
     const double middle = y + 0.5;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Point<double>&a = polygon[i], &b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
         if ((a.y <= middle) == (b.y <= middle)) continue;
         const double x = a.x + (b.x - a.x) * ((middle - a.y) / (b.y - a.y));
-        for (int at = first_right_of(x, x0, x1); at < x1; ++at) inside[at - x0] ^= 2;
+        if (const int at = first_right_of(x, x0, x1); at < x1) edges[at - x0] ^= 2;
     }
 }
 
@@ -45,10 +46,14 @@ void SourceMask::write_row(int y, int x0, int x1, unsigned char* counts) const n
             if (!(across * across + down * down <= circle->radius * circle->radius)) counts[x - x0] = 0;
         }
     }
-    // The second bit is where a texel lies by one polygon.
     for (const std::vector<Point<double>>& polygon : holes) {
-        turn_over(polygon, y, x0, x1, counts);
-        for (int x = x0; x < x1; ++x) counts[x - x0] = counts[x - x0] == 1 ? 1 : 0;
+        mark_edges(polygon, y, x0, x1, counts);
+        bool is_inside = false;
+        for (int x = x0; x < x1; ++x) {
+            unsigned char& texel = counts[x - x0];
+            is_inside = is_inside != ((texel & 2) != 0);
+            texel = (texel & 1) != 0 && !is_inside ? 1 : 0;
+        }
     }
 }
 

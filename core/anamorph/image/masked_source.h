@@ -27,12 +27,16 @@ struct SourceMask {
 };
 
 /// A source as float, of one level, whose texels beyond a mask are 0, with alpha: where the base has none, a last channel is 1
-/// within the mask and 0 beyond. Texels beyond the base's picture (overscan) are not there. Keeps a reference to the base.
+/// within the mask and 0 beyond. What the base lacks of its picture (Source::data_window) is beyond the mask, and texels
+/// beyond its picture (overscan) are not there. Keeps a reference to the base.
 class MaskedSource final : public Source {
   public:
     /// `alpha`: the channel of alpha of the base, -1 where there is none.
     MaskedSource(const Source& base, SourceMask mask, int alpha)
-        : m_base(base), m_mask(std::move(mask)), m_alpha(alpha) {}
+        : m_base(base), m_mask(std::move(mask)), m_alpha(alpha) {
+        const Box all{0, 0, base.size(0).width, base.size(0).height};
+        m_mask.rectangle = intersection(m_mask.rectangle.value_or(all), base.data_window());
+    }
 
     PixelType type() const noexcept override { return PixelType::float32; }
     int channels() const noexcept override { return m_base.channels() + (m_alpha < 0 ? 1 : 0); }

@@ -539,14 +539,26 @@ class SolvedByBlocks final : public SolvedPicture {
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
-        if (m_pixels) return m_pixels->draw(sources[0], box, view, parallel_for);
-        return m_picture.draw(sources[0], box, view, parallel_for);
+        if (!m_pixels) return m_picture.draw(sources[0], box, view, parallel_for);
+        if (!m_pixels->draw(sources[0], box, view, parallel_for)) return false;
+        return m_picture.data.channels.empty() || draw_data(*sources[0], box, view, parallel_for);
     }
     std::unique_ptr<const SolvedPicture> of_moved() const override {
         return moved_channels(m_picture.data).empty() ? nullptr : solved(m_picture.of_data());
     }
 
   private:
+    /// Draws channels that hold no colour, which are read at the machine's addresses, but hold no numbers of its format.
+    bool draw_data(const Source& source, const Box& box, const ImageView& to,
+                   const ParallelFor& parallel_for) const {
+        const auto pixels = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
+        std::vector<std::byte> drawn(pixels * static_cast<std::size_t>(to.channels * size_of(to.type)));
+        const ImageView from = packed_view(drawn.data(), to.type, box.width(), box.height(), to.channels);
+        if (!m_picture.of_data().draw(&source, box, from, parallel_for)) return false;
+        copy_channels(m_picture.data.channels, from, to, [](int, int) { return true; });
+        return true;
+    }
+
     std::shared_ptr<const machine::BlockMachineMap> m_map;
     machine::MachineSchedule m_schedule;
     std::optional<machine::BlockPixels> m_pixels;  ///< of colours

@@ -7,7 +7,6 @@
 #include "anamorph/image/part_source.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/pano.h"
-#include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
 #include "anamorph/panorama/concentric_view.h"
@@ -186,26 +185,18 @@ class Mosaics final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         MosaicRequest request = m_request;
-        const Size& overscan = request.options.overscan;
-        if (level > 0 && !(overscan == Size{})) return {};
-        for (; level > 0; --level) {
-            const std::optional<Chart> half = half_size(request.target);
-            if (!half) return {};
-            request.target = *half;
-        }
-        PictureRequest picture;
-        picture.size = {request.target.width(), request.target.height()};
-        picture.add_overscan(overscan);
-        picture.pixels = request.distortion ? PixelKind::value : pixels_of(request.options.output);
-        picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
-        picture.adds_alpha = request.options.adds_alpha;
+        const PixelKind pixels = request.distortion ? PixelKind::value : pixels_of(request.options.output);
+        std::optional<PanoramaLevel> made = panorama_level(request.target, request.options, pixels, level);
+        if (!made) return {};
+        request.target = made->target;
+        PictureRequest& picture = made->request;
         const bool single = request.circle || request.stack.circles == 1;
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest && single)
             picture.moves = 0;
         if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(request.options.data);
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.solve = [request] { return std::make_unique<SolvedMosaic>(request); };
-        return picture;
+        return std::move(picture);
     }
     SourceFaces faces() const override { return {1, m_request.stack.circles}; }
 

@@ -21,6 +21,16 @@ std::unique_ptr<const Pictures> Operation::read(const OperationInput& input) con
     return make(input);
 }
 
+LinkedFiles Operation::named_files(const ParameterValues& values) const {
+    LinkedFiles files;
+    for (const Parameter& p : *parameters)
+        if ((p.type == ParameterType::image || p.type == ParameterType::file) && values.given(p.name))
+            files.push_back({p.name, values.text(p.name), p.type == ParameterType::image});
+    if (named)
+        for (const LinkedFile& file : named(values)) files.push_back(file);
+    return files;
+}
+
 bool Operation::gathers(std::string_view file) const {
     // With arguments it is the name of a recipe.
     if (sources.empty() || main_file != sources[0] || file.find('?') != std::string_view::npos) return false;

@@ -162,7 +162,7 @@ struct Example {
 
 /// A file that is known of once others are read.
 struct LinkedFile {
-    std::string key;  ///< key among the side files; not the name of a parameter
+    std::string key;  ///< key among the side files; the name of a parameter where that alone names the file
     std::string name;
     bool image = false;  ///< is it drawn? The picture's sources go on with it
 };
@@ -185,8 +185,7 @@ struct Operation {
     std::string main_file = {};
     /// The endings of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
     std::vector<std::string> endings = {};
-    /// Finds the files that are named among other words in a value, which hosts look for where they look for a value that is a file's
-    /// name. May be null.
+    /// Finds the files that are named among other words in a value, for named_files(). May be null.
     LinkedFiles (*named)(const ParameterValues& values) = nullptr;
     /// Finds the files that the side files name; the picture changes with them. May be null. Throws Error.
     LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
@@ -194,6 +193,8 @@ struct Operation {
     /// May the first source be six files, one a face of a cube (operation/face_files.h)?
     bool reads_faces = false;
 
+    /// The files that values name: those of keys of type file and image that are given, and those that `named` finds.
+    LinkedFiles named_files(const ParameterValues& values) const;
     /// Is it the name of a file that stands for the first source, and names images that are the sources?
     bool gathers(std::string_view file) const;
     /// The name of such a file among the side files; empty where there is none.

@@ -589,6 +589,14 @@ Orientation read_orientation(const ParameterValues& values) {
     return {values.number("yaw"), values.number("pitch"), values.number("roll")};
 }
 
+TargetView read_target_view(const ParameterValues& values, const Chart& source) {
+    Orientation look = read_orientation(values);
+    if (!values.given("face")) return {read_target_chart(values, source), look};
+    const FaceAlone face = read_face(values, source);
+    look.face = face.axes;
+    return {face.chart, look};
+}
+
 ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source) {
     ReprojectOptions options;
     options.tol = values.number("tol");
@@ -666,13 +674,7 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     ReprojectOptions options = read_reproject_options(values, facts);
     const std::optional<machine::BumpUnit> machine = machine_of(values);
     if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
-    Orientation look = read_orientation(values);
-    std::optional<FaceAlone> face;
-    if (values.given("face")) {
-        face = read_face(values, source.chart);
-        look.face = face->axes;
-    }
-    const Chart target = face ? face->chart : read_target_chart(values, source.chart);
+    const auto [target, look] = read_target_view(values, source.chart);
     options.overscan = read_overscan(values, target);
     return {source, target, look, read_held(values, facts, source), options, machine};
 }
@@ -683,6 +685,23 @@ std::optional<Chart> half_size(const Chart& chart) {
     const int w = chart.width() / columns, h = chart.height() / rows;
     if (w == 1 && h == 1) return {};
     return chart.resized(std::max(1, w / 2) * columns, std::max(1, h / 2) * rows);
+}
+
+std::optional<PanoramaLevel> panorama_level(const Chart& target, const ReprojectOptions& options,
+                                            PixelKind pixels, int level) {
+    if (level > 0 && !(options.overscan == Size{})) return {};
+    PanoramaLevel made{target, {}};
+    for (; level > 0; --level) {
+        const std::optional<Chart> half = half_size(made.target);
+        if (!half) return {};
+        made.target = *half;
+    }
+    made.request.size = {made.target.width(), made.target.height()};
+    made.request.add_overscan(options.overscan);
+    made.request.pixels = pixels;
+    made.request.adds_alpha = options.adds_alpha;
+    made.request.says = panorama_attributes(made.target, pixels == PixelKind::color);
+    return made;
 }
 
 namespace {
@@ -708,19 +727,11 @@ class Panos final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         ReprojectRequest request = m_request;
-        const Size& overscan = request.options.overscan;
-        if (level > 0 && !(overscan == Size{})) return {};
-        for (; level > 0; --level) {
-            const std::optional<Chart> half = half_size(request.target);
-            if (!half) return {};
-            request.target = *half;
-        }
-        PictureRequest picture;
-        picture.size = {request.target.width(), request.target.height()};
-        picture.add_overscan(overscan);
-        picture.pixels = pixels_of(request.options.output);
-        picture.adds_alpha = request.options.adds_alpha;
-        picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        std::optional<PanoramaLevel> made =
+            panorama_level(request.target, request.options, pixels_of(request.options.output), level);
+        if (!made) return {};
+        request.target = made->target;
+        PictureRequest& picture = made->request;
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest && !m_pair)
             picture.moves = 0;
         if (picture.pixels == PixelKind::color) picture.moved_channels = moved_channels(request.options.data);
@@ -731,7 +742,7 @@ class Panos final : public Pictures {
                           : pair          ? pair->picture(request)
                                           : reprojected_picture(request.map(), request.options));
         };
-        return picture;
+        return std::move(picture);
     }
 
     SourceFaces faces() const override { return faces_of(m_request.source.chart); }
@@ -747,6 +758,7 @@ std::unique_ptr<const Pictures> panos(const OperationInput& input, const SourceF
     std::unique_ptr<const Pictures> pictures = film_pictures(
         input,
         [is_formula, is_pair, facts](const ParameterValues& values) -> std::unique_ptr<const Pictures> {
+            refuse_rows_of_projects(values);
             if (is_formula) return pictures_of_formula(values, facts);
             const ReprojectRequest request = read_reproject_request(values, facts);
             return std::make_unique<Panos>(
@@ -773,7 +785,6 @@ const Operation& pano_operation() {
         .example = {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
         .make = [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
             if (is_of_project(input.files)) return pictures_of_project(input);
-            refuse_rows_of_projects(input.values);
             const Eyes eyes(input.values, input.sources[0].facts);
             return eyes.pictures(panos(input, eyes.facts_of_one()));
         },

@@ -58,6 +58,12 @@ Orientation read_held(const ParameterValues& values, const SourceFacts& facts, c
 Chart read_target_chart(const ParameterValues& values, const Chart& source);
 Size read_overscan(const ParameterValues& values, const Chart& target);
 Orientation read_orientation(const ParameterValues& values);
+/// What the picture shows and how its camera is turned: that of `to`, or one face of it alone where `face` is given.
+struct TargetView {
+    Chart chart;
+    Orientation look;
+};
+TargetView read_target_view(const ParameterValues& values, const Chart& source);
 ReprojectOptions read_reproject_options(const ParameterValues& values, const SourceFacts& source);
 
 /// The picture of a request, at all its levels.
@@ -66,5 +72,15 @@ std::unique_ptr<const Pictures> reprojected_pictures(const ReprojectRequest& req
 /// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
 /// none after the last.
 std::optional<Chart> half_size(const Chart& chart);
+
+/// A picture at one of its levels: its chart there, and what is known of it before it is solved.
+struct PanoramaLevel {
+    Chart target;
+    PictureRequest request;  ///< its size, windows, alpha, kind of pixels, and the attributes of its chart
+};
+/// A level of a picture whose level 0 shows `target`; none past the last. One with overscan has no coarser levels, on which its windows
+/// would not lie on pixels.
+std::optional<PanoramaLevel> panorama_level(const Chart& target, const ReprojectOptions& options,
+                                            PixelKind pixels, int level);
 
 }  // namespace anamorph

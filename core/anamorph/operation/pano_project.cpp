@@ -13,7 +13,6 @@
 #include "anamorph/operation/film.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/pano_formula.h"
-#include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
@@ -90,8 +89,8 @@ ProjectImage drawn(const HuginImage& image) {
 
 // --- Weights -----------------------------------------------------------------------------------------------
 
-/// How far within the edges of what an image shows a point of it lies, in pixels: those of the crop where there is one. A seam is
-/// none, nor a pole.
+/// How far within the edges of what an image shows a point of it lies, in pixels: those of the image and of its crop, which may be
+/// round. A seam is none, nor a pole.
 class EdgeDistance {
   public:
     explicit EdgeDistance(const ProjectImage& image)
@@ -101,9 +100,9 @@ class EdgeDistance {
           m_has_ends(image.mask.rectangle || !image.chart.reaches_poles()) {}
 
     double operator()(const Point<double>& p) const {
-        if (m_circle)
-            return m_circle->radius - std::hypot(p.x - m_circle->middle.x, p.y - m_circle->middle.y);
-        double least = HUGE_VAL;
+        double least = m_circle
+                           ? m_circle->radius - std::hypot(p.x - m_circle->middle.x, p.y - m_circle->middle.y)
+                           : HUGE_VAL;
         if (m_has_sides) least = std::min({least, p.x - m_box.x0, m_box.x1 - p.x});
         if (m_has_ends) least = std::min({least, p.y - m_box.y0, m_box.y1 - p.y});
         return least;
@@ -181,11 +180,9 @@ struct LayersRequest {
 class SolvedLayers final : public SolvedPicture {
   public:
     explicit SolvedLayers(const LayersRequest& request) : m_output(request.options.output) {
-        using enum LayeredPicture::Shows;
-        const bool has_alpha = request.alpha >= 0 || request.options.adds_alpha;
         m_layers.layering = request.layering;
         m_layers.alpha = request.alpha >= 0 ? request.alpha : request.channels;
-        m_layers.shows = m_output == Output::coverage ? alpha : has_alpha ? all : colors;
+        m_layers.shows_alpha = m_output == Output::coverage;
         Picture maps;
         for (std::size_t i = 0; i < request.images.size(); ++i) {
             Picture picture = layer(request, static_cast<int>(i));
@@ -245,23 +242,15 @@ class Layers final : public Pictures {
 
     std::optional<PictureRequest> picture(int, int level) const override {
         LayersRequest request = m_request;
-        const Size& overscan = request.options.overscan;
-        if (level > 0 && !(overscan == Size{})) return {};
-        for (; level > 0; --level) {
-            const std::optional<Chart> half = half_size(request.target);
-            if (!half) return {};
-            request.target = *half;
-        }
-        PictureRequest picture;
-        picture.size = {request.target.width(), request.target.height()};
-        picture.add_overscan(overscan);
-        picture.pixels = pixels_of(request.options.output);
-        picture.adds_alpha = request.options.adds_alpha;
-        picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        std::optional<PanoramaLevel> made =
+            panorama_level(request.target, request.options, pixels_of(request.options.output), level);
+        if (!made) return {};
+        request.target = made->target;
+        PictureRequest& picture = made->request;
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back(request.from);
         picture.solve = [request] { return std::make_unique<SolvedLayers>(request); };
-        return picture;
+        return std::move(picture);
     }
     std::unique_ptr<Source> over_source(std::size_t i, const Source& source) const override {
         return std::make_unique<MaskedSource>(source, m_request.images.at(i).mask, m_request.alpha);
@@ -298,6 +287,10 @@ class ProjectPictures final : public Pictures {
             : m_whole(std::move(whole)), m_crop(crop) {}
         Attributes reached(const ParallelFor& parallel_for) const override {
             return m_whole->reached(parallel_for);
+        }
+        std::unique_ptr<const SolvedPicture> of_moved() const override {
+            std::unique_ptr<const SolvedPicture> moved = m_whole->of_moved();
+            return moved ? std::make_unique<Cropped>(std::move(moved), m_crop) : nullptr;
         }
         bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
                   const ParallelFor& parallel_for) const override {
@@ -370,24 +363,29 @@ TargetValues with_target(const ParameterValues& given, const ProjectRequest& req
         target.values.set("size", Size{static_cast<int>(width),
                                        static_cast<int>(std::clamp(height, 1.0, double{kMaxSide}))});
     }
-    if (!has_field && !is_given({"size", "lens", "d", "overscan", "sensor"})) target.crop = panorama.crop;
+    if (!has_field && !is_given({"size", "lens", "overscan", "padding"})) target.crop = panorama.crop;
     return target;
 }
 
+/// Refuses rows that a project says itself, be they values or key frames.
 void check_rows(const ParameterValues& values) {
     for (const char* name : kRowsOfOneSource)
         if (values.given(name))
             throw Error(name, printable(values.text(name)),
                         "must not be given with a project of Hugin as src");
+    for (const char* name : {"layers", "feather"})
+        if (values.given(name) && values.given("image"))
+            throw Error(name, printable(values.text(name)),
+                        "must not be given with image, of which there is one");
+}
+
+/// Refuses ways of drawing that projects have not.
+void check_ways(const ParameterValues& values) {
     if (values.text("scheme") == "hardware")
         throw Error("scheme", "hardware", "must not be given with a project of Hugin as src");
     if (has_formula(values)) throw Error("to", "formula", "must not be given with a project of Hugin as src");
     if (values.given("face") && !values.given("to"))
         throw Error("face", values.text("face"), "must be given together with to");
-    for (const char* name : {"layers", "feather"})
-        if (values.given(name) && values.given("image"))
-            throw Error(name, printable(values.text(name)),
-                        "must not be given with image, of which there is one");
 }
 
 /// What layers cannot be.
@@ -499,18 +497,15 @@ LinkedFiles images_of_project(const ParameterValues& values, const SideFiles& fi
 }
 
 std::unique_ptr<const Pictures> pictures_of_project(const OperationInput& input) {
-    check_rows(input.values);
+    check_ways(input.values);
     const ProjectRequest request = read_request(input);
     if (request.is_layered()) check_layered(input.values, request.images.size() == 1);
-    const auto make = [request, asked = input.values.text("image")](
-                          const ParameterValues& given) -> std::unique_ptr<const Pictures> {
-        if (given.text("image") != asked)
-            throw Error("image", printable(given.text("image")), "must be the same in all frames");
+    const auto make = [request](const ParameterValues& given) -> std::unique_ptr<const Pictures> {
+        check_rows(given);
         const ParameterValues values = with_target(given, request).values;
         const SourceFacts& facts = request.sources[0].facts;
-        const Chart target = read_target_chart(values, request.images[0].chart);
+        const auto [target, look] = read_target_view(values, request.images[0].chart);
         const ReprojectOptions options = read_options(values, facts, target);
-        const Orientation look = read_orientation(values);
         if (!request.is_layered())
             return reprojected_pictures({request.first(), target, look, request.images[0].held, options});
         LayersRequest layers{request.images, target, look, options, {}, {}, {}, {}, request.says()};

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "anamorph/image/canvas.h"
-#include "anamorph/image/point_sampler.h"
 #include "anamorph/image/strips.h"
+#include "anamorph/operation/shaded_picture.h"
 #include "anamorph/operation/solved.h"
 
 namespace anamorph {
@@ -125,13 +125,7 @@ class ShadedMorph final : public SolvedPicture {
                                    static_cast<std::size_t>(square.height()) * channels);
         for (const ShadedLayer& layer : m_drawn.layers) {
             PointSampler sampler(*source_of(sources, layer), layer.border);
-            const auto read = [&](const Point<double>& at) {
-                float pixel[4];
-                if (!sampler.sample(m_filter, 0, 0, at.x, at.y, pixel)) ok = false;
-                std::array<double, 4> components{0, 0, 0, 1};
-                std::copy_n(pixel, channels, components.begin());
-                return components;
-            };
+            const machine::ShadedWarp::ReadPicture read = register_reader(sampler, m_filter, channels, ok);
             double* to = buffer.data();
             for (int y = square.y0; y < square.y1; ++y)
                 for (int x = square.x0; x < square.x1; ++x) {

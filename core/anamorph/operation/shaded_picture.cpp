@@ -7,7 +7,6 @@
 
 #include "anamorph/image/canvas.h"
 #include "anamorph/image/pixel.h"
-#include "anamorph/image/point_sampler.h"
 #include "anamorph/image/strips.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/solved.h"
@@ -81,13 +80,7 @@ class ProgrammedPicture final : public SolvedPicture {
         const auto channels = static_cast<std::size_t>(source.channels());
         PointSampler sampler(source, m_border);
         bool ok = true;
-        const auto read = [&](const Point<double>& at) {
-            float pixel[4];
-            if (!sampler.sample(m_filter, 0, 0, at.x, at.y, pixel)) ok = false;
-            std::array<double, 4> components{0, 0, 0, 1};
-            std::copy_n(pixel, channels, components.begin());
-            return components;
-        };
+        const machine::ShadedWarp::ReadPicture read = register_reader(sampler, m_filter, channels, ok);
         float row[simd::kMaxRow * 4 + 16] = {};
         for (int y = square.y0; y < square.y1; ++y)
             for (int x = square.x0; x < square.x1; x += simd::kMaxRow) {
@@ -111,6 +104,17 @@ class ProgrammedPicture final : public SolvedPicture {
 };
 
 }  // namespace
+
+machine::ShadedWarp::ReadPicture register_reader(PointSampler& sampler, Filter filter, std::size_t channels,
+                                                 bool& ok) {
+    return [&sampler, &ok, filter, channels](const Point<double>& at) {
+        float pixel[4];
+        if (!sampler.sample(filter, 0, 0, at.x, at.y, pixel)) ok = false;
+        std::array<double, 4> components{0, 0, 0, 1};
+        std::copy_n(pixel, channels, components.begin());
+        return components;
+    };
+}
 
 bool runs_program(const WarpRequest& request) {
     return request.program || (request.machine && request.machine->layout != machine::ShaderLayout::ours);

@@ -53,6 +53,13 @@ Row row_of(std::string_view text, const std::string& label) {
     return row;
 }
 
+/// A value that a row must have.
+std::string_view value_of_row(const Row& row, std::string_view name) {
+    const auto found = row.values.find(name);
+    if (found == row.values.end()) throw Error(std::string(name) + " is missing: must be given");
+    return found->second;
+}
+
 /// A value of a row, for messages.
 std::string written(std::string_view name, std::string_view value) {
     return excerpt(std::string(name) + std::string(value));
@@ -241,11 +248,6 @@ class Images {
             if (number_of(i, name).value_or(than) != than) return true;
         return false;
     }
-    static std::string_view value_of_row(const Row& row, std::string_view name) {
-        const auto found = row.values.find(name);
-        if (found == row.values.end()) throw Error(std::string(name) + " is missing: must be given");
-        return found->second;
-    }
     static std::vector<Point<double>> corners_in(std::string_view text) {
         std::vector<double> numbers;
         while (!(text = text_file::trimmed(text)).empty()) {
@@ -335,11 +337,7 @@ class Images {
 // --- The panorama ------------------------------------------------------------------------------------------
 
 HuginPanorama panorama_of(const Row& row) {
-    const auto value = [&](std::string_view name) {
-        const auto found = row.values.find(name);
-        if (found == row.values.end()) throw Error(std::string(name) + " is missing: must be given");
-        return found->second;
-    };
+    const auto value = [&](std::string_view name) { return value_of_row(row, name); };
     HuginPanorama panorama;
     panorama.size = {checked_whole("w", value("w"), 1, kMaxSide),
                      checked_whole("h", value("h"), 1, kMaxSide)};
