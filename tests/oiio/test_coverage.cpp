@@ -243,7 +243,7 @@ TEST_F(Coverage, IsWhatTheFileHasOfProjects) {
     write_text("cut.pto", R"(p f0 w120 h80 v60 E0 R0 n"TIFF_m c:NONE"
 i w120 h80 f0 v60 r0 p0 y0 a0 b0 c0 d0 e0 g0 t0 S10,110,5,75 n"cut.exr"
 )");
-    const std::vector<float> all = read_floats("cut.pto?filter=bilinear");
+    const std::vector<float> all = read_floats("cut.pto.pano?filter=bilinear&alpha=1");
     ASSERT_EQ(all.size(), std::size_t{4 * 120 * 80});
     double sum = 0;
     for (std::size_t i = 0; i < all.size(); i += 4) {
