@@ -15,8 +15,8 @@
 namespace anamorph::plan_detail {
 
 inline constexpr int kBlockWidth = BlockWriter::kWidth, kBlockHeight = BlockWriter::kHeight;
-// The least sides of boxes: below, a polynomial costs more than its pixels.
-inline constexpr int kFloor = 8, kResidualFloor = 4;
+// The least side of boxes: below, a polynomial costs more than its pixels.
+inline constexpr int kFloor = 8;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();

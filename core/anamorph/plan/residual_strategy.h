@@ -27,12 +27,11 @@ class ResidualStrategy {
 
         /// Bounds |f - its bilinear interpolant| by h^2 / 2 max |f_ss| per direction, h half the cell.
         double error(int width, int height) const {
-            const auto of = [&](const Jet<Interval, 2>& f) {
-                return 0.25 *
-                       (magnitude(f.at(2, 0)) * width * width + magnitude(f.at(0, 2)) * height * height);
-            };
-            return length(of(m_p.x), of(m_p.y));
+            return error_of(width, height, [](const Interval& a) { return magnitude(a); });
         }
+        /// Can no cell within the box have an error() of `tol`? A derivative is nowhere smaller than the least magnitude of its
+        /// interval, and a cell not smaller than the least one. NaN: not known.
+        bool is_hopeless(double tol) const { return error_of(kFloor, kFloor, least_magnitude) > tol; }
         /// Does cutting a box from top to bottom take away more of the error?
         bool is_cut_vertically(const Box& box) const {
             const double wide = magnitude(m_p.x.at(2, 0)) + magnitude(m_p.y.at(2, 0));
@@ -41,6 +40,17 @@ class ResidualStrategy {
         }
 
       private:
+        static double least_magnitude(const Interval& a) {
+            return a.lo <= 0 && a.hi >= 0 ? 0 : std::min(std::fabs(a.lo), std::fabs(a.hi));
+        }
+        template <class Size>
+        double error_of(int width, int height, const Size& size) const {
+            const auto of = [&](const Jet<Interval, 2>& f) {
+                return 0.25 * (size(f.at(2, 0)) * width * width + size(f.at(0, 2)) * height * height);
+            };
+            return length(of(m_p.x), of(m_p.y));
+        }
+
         Point<Jet<Interval, 2>> m_p;
     };
     Curvature curvature(const Box& box, const Local& local) const {

@@ -260,6 +260,7 @@ class Subdivider {
     /// Settles a box by cells of a table, as wide as the second derivatives allow.
     void settle_residual(const Box& box, const Place& place) {
         const auto curvature = m_residuals.curvature(box, place.local);
+        if (curvature.is_hopeless(m_tol)) return leave(box);
         const auto settle_part = [&](const Box& b) { settle(b); };
         if (curvature.error(std::min(box.width(), kBlockWidth), std::min(box.height(), kBlockHeight)) <=
             m_tol)
@@ -268,12 +269,12 @@ class Subdivider {
         else if (!is_block(box))
             split(box, settle_part);
         else
-            halve(box, curvature.is_cut_vertically(box), kResidualFloor, settle_part);
+            halve(box, curvature.is_cut_vertically(box), kFloor, settle_part);
     }
     void place_cell(const Box& box, const Place& place, double interpolation_error) {
         const auto cell = m_residuals.cell(box, place.local, interpolation_error);
         if (m_emitter.quadratic(box, place.local, cell.x, cell.y, cell.error)) return;
-        halve(box, box.width() > box.height(), kResidualFloor, [&](const Box& b) { settle(b); });
+        halve(box, box.width() > box.height(), kFloor, [&](const Box& b) { settle(b); });
     }
 
     /// Calls body(part) for the halves of a box, cut across its longer side.
