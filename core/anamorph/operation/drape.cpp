@@ -92,6 +92,8 @@ ParameterTable accuracy_rows() {
                "of oka and oka-z: side of a block, in pixels of the source"),
         number("overlap", "pixels", "0.5", 0, 64,
                "of oka and oka-z: width of what neighbours have in common"),
+        toggle("holes", "0",
+               "of oka and oka-z: 1: anamorph:holes is counted, for which scheme auto is drawn, too"),
     };
 }
 
@@ -407,6 +409,7 @@ struct DrapeParts {
     /// Channels that hold no colour are those of the side that is seen in a pixel's middle, neither lit nor mixed; where none is,
     /// those of what is behind, if there is anything.
     std::vector<int> data = {};
+    bool counts_holes = false;
     std::optional<surface::Drape> bare = {}, behind = {}, seen = {};
 };
 
@@ -420,6 +423,9 @@ DrapeParts parts_of(const DrapeRequest& request, const ParameterValues& values, 
         return drape(of_value);
     };
     DrapeParts parts{drape(options)};
+    const bool shares_edges =
+        options.scheme == surface::DrapeScheme::automatic || options.scheme == surface::DrapeScheme::exact;
+    parts.counts_holes = shares_edges || values.toggle("holes");
     if (adds_alpha) parts.coverage.emplace(value_of(surface::DrapeOutput::coverage));
     const DataChannels data = request.data(values);
     if (pixels_of(options) != PixelKind::color || data.channels.empty()) return parts;
@@ -451,8 +457,8 @@ class SolvedDrape final : public SolvedPicture {
         Attributes all = {{"anamorph:max_error", reached.max_error},
                           {"anamorph:exact_fraction", reached.exact_fraction},
                           {"anamorph:patches", static_cast<int>(drape.patches())}};
-        if (const std::optional<int> holes = drape.holes(parallel_for))
-            all.push_back({"anamorph:holes", *holes});
+        const std::optional<int> holes = m_parts.counts_holes ? drape.holes(parallel_for) : std::nullopt;
+        if (holes) all.push_back({"anamorph:holes", *holes});
         return all;
     }
     std::unique_ptr<const SolvedPicture> of_moved() const override {

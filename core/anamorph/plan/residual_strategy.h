@@ -29,8 +29,8 @@ class ResidualStrategy {
         double error(int width, int height) const {
             return error_of(width, height, [](const Interval& a) { return magnitude(a); });
         }
-        /// Can no cell within the box have an error() of `tol`? A derivative is nowhere smaller than the least magnitude of its
-        /// interval, and a cell not smaller than the least one. NaN: not known.
+        /// Can no cell of the least sides within the box have an error() of `tol`? A derivative is nowhere smaller than the least
+        /// magnitude of its interval. False where that is not known.
         bool is_hopeless(double tol) const { return error_of(kFloor, kFloor, least_magnitude) > tol; }
         /// Does cutting a box from top to bottom take away more of the error?
         bool is_cut_vertically(const Box& box) const {

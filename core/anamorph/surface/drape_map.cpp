@@ -30,6 +30,15 @@ int seen_in(const SeenPixels& pixels, const Box& box) {
     return count;
 }
 
+/// body(x, y, at) for the pixels of a box that show something; `at` as SeenPixels::index().
+template <class Body>
+void for_seen(const SeenPixels& pixels, const Box& box, const Body& body) {
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x)
+            if (const std::size_t at = pixels.index(x, y); pixels.facet[at] != SeenPixels::kNone)
+                body(x, y, at);
+}
+
 /// body(box) for squares of at most `side`.
 template <class Body>
 void for_squares(const Box& box, int side, const Body& body) {
@@ -165,25 +174,36 @@ void DrapeMap::order_sheets(const Box& box, SeenPixels& pixels, int times) const
     });
 }
 
-/// Moves the points to those that are seen at the middles of their pixels.
+/// Moves the points to those that are seen at the middles of their pixels. Slopes over what a square shows, and an eighth of that
+/// around it for what points move, serve most of its pixels.
 void DrapeMap::polish(SeenPixels& pixels) const {
-    const Box& box = pixels.box;
+    constexpr int kSide = 8;
     const PointPolish to(*m_surface, m_camera);
     pixels.bound.assign(pixels.facet.size(), 0);
-    for (int y = box.y0; y < box.y1; ++y)
-        for (int x = box.x0; x < box.x1; ++x) {
-            const std::size_t at = pixels.index(x, y);
-            if (pixels.facet[at] == SeenPixels::kNone) continue;
+    for_squares(pixels.box, kSide, [&](const Box& square) {
+        Interval u(HUGE_VAL, -HUGE_VAL), v = u;
+        for_seen(pixels, square, [&](int, int, std::size_t at) {
+            u = {std::min(u.lo, pixels.u[at]), std::max(u.hi, pixels.u[at])};
+            v = {std::min(v.lo, pixels.v[at]), std::max(v.hi, pixels.v[at])};
+        });
+        if (!(u.lo <= u.hi && v.lo <= v.hi)) return;
+        const auto with_more = [](const Interval& a) {
+            const double more = (a.hi - a.lo) / 8;
+            return Interval(std::max(0.0, a.lo - more), std::min(1.0, a.hi + more));
+        };
+        const PointPolish::Slopes around = to.slopes(with_more(u), with_more(v));
+        for_seen(pixels, square, [&](int x, int y, std::size_t at) {
             const auto& facet = m_room->facets.facets[static_cast<std::size_t>(pixels.facet[at])];
             pixels.bound[at] = m_room->facets.leaves[facet.leaf].bound;
-            const PointPolish::Polished p =
-                to.polish(x + 0.5 - width() / 2.0, y + 0.5 - height() / 2.0, pixels.u[at], pixels.v[at]);
-            if (!(p.bound < pixels.bound[at])) continue;
+            const PointPolish::Polished p = to.polish(x + 0.5 - width() / 2.0, y + 0.5 - height() / 2.0,
+                                                      pixels.u[at], pixels.v[at], &around);
+            if (!(p.bound < pixels.bound[at])) return;
             pixels.u[at] = p.u;
             pixels.v[at] = p.v;
             pixels.nearness[at] = p.nearness;
             pixels.bound[at] = p.bound;
-        }
+        });
+    });
 }
 
 double DrapeMap::bound_at(const SeenPixels& pixels, std::size_t at) const {

@@ -44,19 +44,30 @@ PointPolish::Step PointPolish::step(double x, double y, double u, double v) cons
     return s;
 }
 
-bool PointPolish::is_single(const Step& s, double u0, double v0, double u1, double v1) const noexcept {
-    const auto seen = seen_range(m_camera, m_surface.range({std::min(u0, u1), std::max(u0, u1)},
-                                                           {std::min(v0, v1), std::max(v0, v1)}));
-    const Interval &x_u = seen[0].c[1], &x_v = seen[0].c[2], &y_u = seen[1].c[1], &y_v = seen[1].c[2];
-    // 1 - Y g' contracts in some weighted maximum norm, and the box has one root at most, where the matrix of its
-    // magnitudes has a spectral radius below 1.
-    const double uu = magnitude(Interval(1) - (s.u_x * x_u + s.u_y * y_u)),
-                 uv = magnitude(s.u_x * x_v + s.u_y * y_v), vu = magnitude(s.v_x * x_u + s.v_y * y_u),
-                 vv = magnitude(Interval(1) - (s.v_x * x_v + s.v_y * y_v));
+PointPolish::Slopes PointPolish::slopes(const Interval& u, const Interval& v) const noexcept {
+    const auto seen = seen_range(m_camera, m_surface.range(u, v));
+    return {u, v, seen[0].c[1], seen[0].c[2], seen[1].c[1], seen[1].c[2]};
+}
+
+/// Has a box one root at most? 1 - Y g' contracts in some weighted maximum norm where the matrix of its magnitudes has a spectral
+/// radius below 1.
+bool PointPolish::contracts(const Step& s, const Slopes& g) noexcept {
+    const double uu = magnitude(Interval(1) - (s.u_x * g.x_u + s.u_y * g.y_u)),
+                 uv = magnitude(s.u_x * g.x_v + s.u_y * g.y_v), vu = magnitude(s.v_x * g.x_u + s.v_y * g.y_u),
+                 vv = magnitude(Interval(1) - (s.v_x * g.x_v + s.v_y * g.y_v));
     return uu < 1 && vv < 1 && (1 - uu) * (1 - vv) * (1 - 0x1p-40) > uv * vu;
 }
 
-PointPolish::Polished PointPolish::polish(double x, double y, double u, double v) const noexcept {
+bool PointPolish::is_single(const Step& s, double u0, double v0, double u1, double v1,
+                            const Slopes* around) const noexcept {
+    const Interval u(std::min(u0, u1), std::max(u0, u1)), v(std::min(v0, v1), std::max(v0, v1));
+    const auto holds = [](const Interval& a, const Interval& b) { return a.lo <= b.lo && b.hi <= a.hi; };
+    if (around && holds(around->u, u) && holds(around->v, v) && contracts(s, *around)) return true;
+    return contracts(s, slopes(u, v));
+}
+
+PointPolish::Polished PointPolish::polish(double x, double y, double u, double v,
+                                          const Slopes* around) const noexcept {
     Polished to{u, v, 0, HUGE_VAL};
     Step s = step(x, y, u, v);
     for (int n = 0; n < kMostSteps; ++n) {
@@ -73,7 +84,7 @@ PointPolish::Polished PointPolish::polish(double x, double y, double u, double v
         if (std::max(std::fabs(du), std::fabs(dv)) <= kLeastStep) break;
     }
     const double depth = m_camera.perspective() ? s.p.z : 1;
-    if (!(depth > 0) || !(s.p.z >= m_camera.near()) || !is_single(s, u, v, to.u, to.v)) return to;
+    if (!(depth > 0) || !(s.p.z >= m_camera.near()) || !is_single(s, u, v, to.u, to.v, around)) return to;
     to.nearness = m_camera.perspective() ? 1 / s.p.z : -s.p.z;
     // What the camera loses, and the surface: as of patches (facets.cpp), at a point.
     const auto largest = [](const glm::dvec3& a) {
