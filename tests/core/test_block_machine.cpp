@@ -638,7 +638,15 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
         }
         return "";
     };
-    EXPECT_EQ(message({{"shading", "phong"}}), "shading=phong: must be none with scheme=hardware");
+    // Light takes time of the processors, which do not bind here; with it they do.
+    EXPECT_EQ(message({{"shading", "phong"}}), "");
+    EXPECT_GT(reached_by_drape({{"shading", "gouraud"},
+                                {"light", "0,0,1,1,0,1,0,1,1"},
+                                {"specular", "1"},
+                                {"machine", "oka-1987:host_cycles=0,processors=1"}})["anamorph:frame_ms"],
+              reached_by_drape({{"machine", "oka-1987:host_cycles=0,processors=1"}})["anamorph:frame_ms"]);
+    EXPECT_EQ(message({{"machine", "oka-1987:light_bits=24"}}),
+              "machine: light_bits=24: must be an integer from 0 to 23");
     EXPECT_EQ(message({{"output", "depth"}}),
               "output=depth: must be color, stmap, error or bound with scheme=hardware");
     EXPECT_EQ(message({{"background", "1"}}), "background=1: must not be given with scheme=hardware");

@@ -191,6 +191,11 @@ TEST(BlockSchedule, FourBlocksByHand) {
     EXPECT_EQ(schedule().stages[S::processors].cycles, 2 * (41 + 48));
     EXPECT_EQ(schedule().stages[S::pixels].bytes_read, 256 * (12 + 2));
     EXPECT_EQ(schedule().stages[S::pixels].bytes_written, 256 * (3 + 2));
+    // Light takes 5 products, two functions and a division more.
+    SurfaceCost lit = bumpy;
+    lit.light = {5, 1, 2};
+    EXPECT_EQ(schedule_of(machine, counts, lit, {16, 16}, {16, 16}).stages[S::processors].cycles,
+              2 * (41 + 13 + 48 + 16));
     machine.surface_multiplies = 20;
     EXPECT_EQ(schedule().stages[S::processors].cycles, 2 * (20 + 27 + 32));
     machine.texel_bits = 12;

@@ -27,15 +27,6 @@ struct PixelRange {
           last(static_cast<int>(std::floor(std::clamp(high - 0.5, -1.0, count - 1.0)))) {}
 };
 
-/// Numbers of a processor: each result is rounded to its format.
-struct Rounding {
-    NumberFormat format;
-
-    double operator()(double value) const {
-        bool beyond = false;
-        return nearest(format, value, beyond);
-    }
-};
 /// Numbers that are taken for exact.
 struct NoRounding {
     double operator()(double value) const { return value; }
@@ -436,6 +427,7 @@ BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedS
             if (on_screen.is_flat()) continue;
             const double(&b)[4] = on_screen.inverse();
             frame.steps.push_back({b[0], b[2], b[1], b[3]});
+            frame.centres.push_back({block.u * picture.width, block.v * picture.height});
             blocks.push_back(on_screen);
         }
     Drawer(machine, blocks, frame).draw();

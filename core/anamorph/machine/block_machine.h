@@ -40,6 +40,7 @@ inline constexpr NumberRow kFractionBitsRow{"fraction_bits", 12, 0, 30, NumberRo
 inline constexpr NumberRow kDepthBitsRow{"depth_bits", 16, 1, 32, NumberRow::closed, true};
 inline constexpr NumberRow kTapWeightRow{"weight_bits", 8, 0, 23, NumberRow::closed, true};
 inline constexpr NumberRow kTexelBitsRow{"texel_bits", 0, 0, 16, NumberRow::closed, true};
+inline constexpr NumberRow kLightBitsRow{"light_bits", 8, 0, 23, NumberRow::closed, true};
 inline constexpr NumberRow kFrameClockRow{"frame_clock_ms", 33, 0, 1e6};
 inline constexpr NumberRow kOkaBlockRow{"block", 8, 0.25, 4096};
 inline constexpr NumberRow kOkaOverlapRow{"overlap", 0.5, 0, 16};
@@ -88,6 +89,8 @@ struct BlockMachine {
         static_cast<int>(kTapWeightRow.standard);  ///< weights of texels are multiples of 2^-weight_bits
     int texel_bits = static_cast<int>(
         kTexelBitsRow.standard);  ///< of a channel in the memories; 0: as the source has them
+    int light_bits = static_cast<int>(
+        kLightBitsRow.standard);  ///< what light makes of a pixel is of multiples of 2^-light_bits
     double frame_clock_ms = kFrameClockRow.standard;  ///< time from one shown frame to the next; 0: none
     double block = kOkaBlockRow.standard, overlap = kOkaOverlapRow.standard;  ///< as in OkaBlocks
 };
@@ -114,8 +117,9 @@ struct BlockFrame {
     Size screen;
     std::vector<std::int32_t> block;  ///< kNone where none was drawn
     std::vector<Point<double>> addresses;
-    std::vector<bool> beyond;     ///< the address was beyond the range, and saturated
-    std::vector<Jacobian> steps;  ///< derivatives of the blocks' maps, in the processors' numbers
+    std::vector<bool> beyond;            ///< the address was beyond the range, and saturated
+    std::vector<Jacobian> steps;         ///< derivatives of the blocks' maps, in the processors' numbers
+    std::vector<Point<double>> centres;  ///< of the blocks, in texels
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +

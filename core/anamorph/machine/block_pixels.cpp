@@ -131,6 +131,9 @@ bool BlockPixels::draw(const Source* source, const Box& box, const ImageView& vi
                 if (!reader.read(frame.addresses[at], frame.steps[static_cast<std::size_t>(frame.block[at])],
                                  pixel))
                     ok = false;
+                if (m_shading)
+                    add_light(m_shading->at(frame.block[at], frame.addresses[at]), pixel, channels, m_alpha,
+                              true);
                 if (source->unassociated_alpha() >= 0)
                     unassociate_alpha(pixel, channels, source->unassociated_alpha());
             }

@@ -4,11 +4,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "anamorph/image/border.h"
 #include "anamorph/image/filter.h"
 #include "anamorph/image/source.h"
 #include "anamorph/machine/block_machine_map.h"
+#include "anamorph/machine/block_shading.h"
 #include "anamorph/parallel_for.h"
 
 namespace anamorph::machine {
@@ -23,6 +26,11 @@ class BlockPixels {
     /// `border`: of the source, one piece.
     BlockPixels(std::shared_ptr<const BlockMachineMap> map, const BlockMachine& machine, const Border& border,
                 Filter filter);
+    /// Lights what is drawn from now on. `alpha`: the channel of alpha of sources, -1 where there is none.
+    void light(BlockShading shading, int alpha) {
+        m_shading = std::move(shading);
+        m_alpha = alpha;
+    }
 
     /// Draws a box of the screen to `view`, whose pixel (0, 0) is (box.x0, box.y0). Pixels of no block are 0. False where the source
     /// could not be read. Throws Error where there is no source, or the view does not fit, and std::bad_alloc.
@@ -35,7 +43,8 @@ class BlockPixels {
     std::shared_ptr<const BlockMachineMap> m_map;
     Border m_border;
     Filter m_filter;
-    int m_weight_bits, m_texel_bits;
+    int m_weight_bits, m_texel_bits, m_alpha = -1;
+    std::optional<BlockShading> m_shading;
 };
 
 }  // namespace anamorph::machine

@@ -16,14 +16,18 @@ constexpr int kMultiplies = 9 + 2 + 4 + 6, kDivisions = 2, kDepthMultiplies = 2 
 
 /// Cycles of the processors: products and divisions of all blocks, which they share, and the sort, which one list goes through:
 /// each block, and each bucket.
-double processor_cycles(const BlockMachine& machine, double blocks, const OperationCounts& point) {
-    const double of_surface = machine.surface_multiplies
-                                  ? *machine.surface_multiplies
-                                  : point.products + double(machine.function_multiplies) * point.functions;
-    const int divisions = kDivisions + (machine.surface_multiplies ? 0 : point.divisions);
+double processor_cycles(const BlockMachine& machine, double blocks, const SurfaceCost& cost) {
+    const auto products_of = [&](const OperationCounts& counts) {
+        return counts.products + double(machine.function_multiplies) * counts.functions;
+    };
+    const double of_surface =
+        machine.surface_multiplies ? *machine.surface_multiplies : products_of(cost.point);
+    const int divisions =
+        kDivisions + (machine.surface_multiplies ? 0 : cost.point.divisions) + cost.light.divisions;
     const bool in_depth = machine.hidden == Hiding::z_buffer;
     const double products =
-        std::ceil((of_surface + kMultiplies + (in_depth ? kDepthMultiplies : 0)) / machine.multipliers);
+        std::ceil((of_surface + products_of(cost.light) + kMultiplies + (in_depth ? kDepthMultiplies : 0)) /
+                  machine.multipliers);
     const double of_blocks =
         std::ceil(blocks / machine.processors) * (products + double(divisions) * machine.division_cycles);
     return of_blocks + (in_depth ? 0 : blocks * machine.sort_cycles + machine.buckets);
@@ -52,7 +56,7 @@ std::vector<MachineStage> stages_of(const BlockMachine& machine, const BlockCoun
     stages[MachineSchedule::host] = {"host computer", double(machine.host_cycles), 0, told, "programs",
                                      2 * told};
     stages[MachineSchedule::processors] = {"micro-coded processors",
-                                           processor_cycles(machine, blocks, cost.point),
+                                           processor_cycles(machine, blocks, cost),
                                            told,
                                            blocks * kBytesOfBlock,
                                            "block data memory",

@@ -206,6 +206,7 @@ BlockMachine block_machine_from_text(std::string_view text) {
     members.read(kDepthBitsRow, machine.depth_bits);
     members.read(kTapWeightRow, machine.weight_bits);
     members.read(kTexelBitsRow, machine.texel_bits);
+    members.read(kLightBitsRow, machine.light_bits);
     members.read(kFrameClockRow, machine.frame_clock_ms);
     members.read(kOkaBlockRow, machine.block);
     members.read(kOkaOverlapRow, machine.overlap);

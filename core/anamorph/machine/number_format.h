@@ -195,6 +195,16 @@ struct FormatNumber {
     friend double enlarger(FormatNumber, FormatNumber) { return 1; }
 };
 
+/// Numbers of a processor: each result is rounded to its format.
+struct Rounding {
+    NumberFormat format;
+
+    double operator()(double value) const {
+        bool beyond = false;
+        return nearest(format, value, beyond);
+    }
+};
+
 /// Calls body(FormatNumber<format>()) for a format in which hardware computes: float16, float24, fixed16,
 /// fixed32, and float32 in place of all others.
 template <class Body>

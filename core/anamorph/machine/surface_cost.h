@@ -10,7 +10,8 @@ namespace anamorph::machine {
 /// What micro-coded processors do for a point of a surface, and what the host computer tells them of it.
 struct SurfaceCost {
     OperationCounts point;
-    int numbers = 0;  ///< numbers that describe the surface, those of its bumps among them
+    int numbers = 0;             ///< numbers that describe the surface, those of its bumps among them
+    OperationCounts light = {};  ///< what a block takes more for its light
 
     friend bool operator==(const SurfaceCost&, const SurfaceCost&) = default;
 };

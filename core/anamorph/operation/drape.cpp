@@ -218,8 +218,6 @@ std::optional<machine::BlockMachine> machine_of(const ParameterValues& values,
                                               ? machine::block_machine_from_text(values.text("machine"))
                                               : machine::BlockMachine{};
     if (values.text("scheme") != "hardware") return {};
-    if (options.lighting.shading != surface::DrapeShading::none)
-        throw Error("shading", values.text("shading"), "must be none with scheme=hardware");
     if (options.own != surface::DrapeOutput::shared)
         throw Error("output", values.text("output"),
                     "must be color, stmap, error or bound with scheme=hardware");
@@ -517,11 +515,15 @@ class SolvedByBlocks final : public SolvedPicture {
         : m_map(std::make_shared<machine::BlockMachineMap>(*request.machine(values), request.surface(values),
                                                            request.camera(values, size), request.source())),
           m_schedule(machine::schedule_of(*request.machine(values), m_map->frame().counts,
-                                          machine::cost_of(request.sum(values)), request.source(), size)) {
+                                          cost_of(request, values), request.source(), size)) {
         const surface::DrapeOptions options = request.options(values);
         const Chart flat(Projection::rectilinear, request.source().width, request.source().height);
         if (options.output == Output::color && options.own == surface::DrapeOutput::shared)
             m_pixels.emplace(m_map, *request.machine(values), Border(flat, options.wrap), options.filter);
+        if (m_pixels && options.lighting.shading != surface::DrapeShading::none)
+            m_pixels->light({*request.machine(values), *request.surface(values), request.camera(values, size),
+                             request.source(), m_map->frame(), options.lighting},
+                            options.alpha);
         m_picture = picture_through(m_map, Border(flat, options.wrap), options.filter, options.output);
         m_picture.data = request.data(values);
         if (options.output == Output::error)
@@ -554,6 +556,11 @@ class SolvedByBlocks final : public SolvedPicture {
     }
 
   private:
+    static machine::SurfaceCost cost_of(const DrapeRequest& request, const ParameterValues& values) {
+        machine::SurfaceCost cost = machine::cost_of(request.sum(values));
+        cost.light = machine::cost_of(request.options(values).lighting);
+        return cost;
+    }
     /// Draws channels that hold no colour, which are read at the machine's addresses, but hold no numbers of its format.
     bool draw_data(const Source& source, const Box& box, const ImageView& to,
                    const ParallelFor& parallel_for) const {

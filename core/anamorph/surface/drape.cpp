@@ -143,7 +143,8 @@ Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Si
       m_options(options),
       m_map(map_or_least_tol(*m_surface, camera, picture, options)) {
     if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
-        for (const FacetCorner& corner : m_map->facets().corners) m_lit.push_back(lit(corner));
+        for (const FacetCorner& corner : m_map->facets().corners)
+            m_lit.push_back(lit_point(m_surface->tree.surface(), m_map->camera(), corner.u, corner.v));
     const Chart flat(Projection::rectilinear, picture.width, picture.height);
     m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
     m_picture.filter = options.filter;
@@ -171,16 +172,6 @@ std::optional<int> Drape::holes(const ParallelFor& parallel_for) const {
                           intersection(box, {1, 1, screen.x1 - 1, screen.y1 - 1}));
     });
     return count.load();
-}
-
-Drape::Lit Drape::lit(const FacetCorner& corner) const {
-    const Camera& camera = m_map->camera();
-    const SurfaceFrame frame = m_surface->tree.surface().frame(corner.u, corner.v);
-    const glm::dvec3 across = glm::cross(camera.turned(frame.by_u), camera.turned(frame.by_v));
-    const glm::dvec3 ray = camera.ray_to(camera.in_frame(frame.position));
-    const double length = glm::length(across);
-    const double inverse = length > 0 ? (glm::dot(across, ray) > 0 ? -1 : 1) / length : 0;
-    return {camera.in_space(across * inverse), camera.in_space(ray)};
 }
 
 Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
@@ -302,40 +293,21 @@ bool Drape::draw_values(const Box& box, const ImageView& view, const ParallelFor
     return true;
 }
 
-float Drape::light(const glm::dvec3& n, const glm::dvec3& ray, float& highlight) const {
-    const DrapeLighting& l = m_options.lighting;
-    double diffuse = 0, specular = 0;
-    for (const glm::dvec3& to_light : l.lights) {
-        const double facing = glm::dot(n, to_light);
-        if (!(facing > 0)) continue;
-        diffuse += facing;
-        const glm::dvec3 middle = to_light - ray;
-        const double length = glm::length(middle);
-        if (l.specular > 0 && length > 0)
-            specular += std::pow(std::max(0.0, glm::dot(n, middle) / length), l.shininess);
-    }
-    highlight = static_cast<float>(l.specular * specular);
-    return static_cast<float>(l.ambient + l.diffuse * diffuse);
-}
-
 void Drape::light_pixel(const Spot& spot, float* pixel, int channels, const AlphaChannel& alpha) const {
-    float share = 0, highlight = 0;
+    Light light;
     glm::dvec3 ray(0.0);
     for (int k = 0; k < 3; ++k) {
-        const Lit& corner = m_lit[spot.facet->corner[k]];
+        const LitPoint& corner = m_lit[spot.facet->corner[k]];
         ray += spot.weight[k] * corner.ray;
         if (m_options.lighting.shading == DrapeShading::phong) continue;
-        float more = 0;
         const auto weight = static_cast<float>(spot.weight[k]);
-        share += weight * light(corner.normal, corner.ray, more);
-        highlight += weight * more;
+        const Light of_corner = light_at(m_options.lighting, corner);
+        light.share += weight * of_corner.share;
+        light.highlight += weight * of_corner.highlight;
     }
     if (m_options.lighting.shading == DrapeShading::phong)
-        share = light(normal(spot), glm::normalize(ray), highlight);
-    // What is not there does not shine.
-    if (alpha.exists() && alpha.multiplied) highlight *= pixel[alpha.channel];
-    for (int c = 0; c < channels; ++c)
-        if (c != alpha.channel) pixel[c] = pixel[c] * share + highlight;
+        light = light_at(m_options.lighting, {normal(spot), glm::normalize(ray)});
+    add_light(light, pixel, channels, alpha.channel, alpha.multiplied);
 }
 
 struct Drape::Layers {

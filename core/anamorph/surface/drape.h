@@ -19,23 +19,9 @@
 #include "anamorph/parallel_for.h"
 #include "anamorph/surface/backdrop.h"
 #include "anamorph/surface/edges.h"
+#include "anamorph/surface/lighting.h"
 
 namespace anamorph::surface {
-
-/// How light is added up.
-enum class DrapeShading {
-    none,
-    gouraud,  ///< intensities at the corners of facets, interpolated
-    phong     ///< normals at the corners of facets, interpolated
-};
-
-/// Lights at infinity, and the numbers by which a surface, lit alike on both sides, reflects them: color
-/// (ambient + diffuse sum |n . l|) + specular sum (n . h)^shininess, where a light is on the viewer's side.
-struct DrapeLighting {
-    DrapeShading shading = DrapeShading::none;
-    std::vector<glm::dvec3> lights = {{0, 0, 1}};  ///< directions towards them, of length 1
-    double ambient = 0.2, diffuse = 0.8, specular = 0, shininess = 20;
-};
 
 /// How the surface is made of facets.
 enum class DrapeScheme {
@@ -122,25 +108,19 @@ class Drape {
                     const ParallelFor& parallel_for) const;
     /// Draws edge pixels; one per thread.
     class EdgePainter;
-    /// A corner's normal on the viewer's side and the way from the eye to it, both of length 1 and in space.
-    struct Lit {
-        glm::dvec3 normal, ray;
-    };
-    Lit lit(const FacetCorner& corner) const;
     glm::dvec3 normal(const Spot& spot) const;
     double landing_error(const Spot& spot, int x, int y) const;
     template <class Body>
     void for_edges(const Box& box, const ParallelFor& parallel_for, const Body& body) const;
     bool draw_values(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const;
     void put_values(const Spot& spot, int x, int y, float* to) const;
-    float light(const glm::dvec3& normal, const glm::dvec3& ray, float& highlight) const;
     void light_pixel(const Spot& spot, float* pixel, int channels, const AlphaChannel& alpha) const;
     bool finish(const PixelRows& rows, const Layers& layers) const;
 
     std::shared_ptr<SharedTree> m_surface;
     DrapeOptions m_options;
     std::shared_ptr<const DrapeMap> m_map;
-    std::vector<Lit> m_lit;  ///< lit corners, where they are needed
+    std::vector<LitPoint> m_lit;  ///< corners, where they are lit
     Picture m_picture;
 };
 
