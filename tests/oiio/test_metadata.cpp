@@ -340,6 +340,10 @@ TEST_F(Metadata, WhatWasAssumedIsSaid) {
     EXPECT_EQ(from("fish.exr.pano?size=8"), "fisheye (as GPano:ProjectionType says)");
     write_panorama("square.exr", 32, 32);
     EXPECT_THAT(open_error("square.exr.pano?size=8"), HasSubstr("from is not given"));
+    // One face that was cut out of a cube map says no longer that it is one.
+    ASSERT_EQ(run("oiiotool 'city.exr.pano?to=cubemap&size=16x96' --cut 16x16+0+16 -o face.exr").status, 0);
+    EXPECT_THAT(open_error("face.exr.pano?size=8"), HasSubstr("from is not given and the source (16x16)"));
+    EXPECT_EQ(from("face.exr.pano?size=8&from=rectilinear&srcfov=90"), "rectilinear (given)");
     ImageBuf dst(ImageSpec(8, 8, 3, OIIO::TypeFloat));
     ASSERT_TRUE(reproject(dst, panorama(64, 32))) << dst.geterror();
     EXPECT_EQ(dst.spec().get_string_attribute("anamorph:from"),

@@ -254,10 +254,21 @@ struct Taken {
     std::string reason;
 };
 
-/// What the source is taken for, and why.
+/// Can a source of this size be a picture of the projection's faces?
+bool can_have_faces(Projection projection, const SourceFacts& source) {
+    try {
+        Chart(projection, source.width, source.height);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// What the source is taken for, and why. A face that was cut out keeps what was said of all of them: that says nothing.
 Taken source_projection(const ParameterValues& values, const SourceFacts& source) {
     if (values.given("from")) return {projection_from_name(values.text("from"), "from"), "given"};
-    if (source.projection) return {*source.projection, "as " + source.said_by + " says"};
+    if (source.projection && (!has_faces(*source.projection) || can_have_faces(*source.projection, source)))
+        return {*source.projection, "as " + source.said_by + " says"};
     const double width = source.crop ? source.crop->width : source.width * source.pixel_aspect,
                  height = source.crop ? source.crop->height : source.height;
     if (width == 2 * height) return {Projection::equirectangular, "assumed from the 2:1 shape"};
