@@ -665,7 +665,7 @@ TEST(Chain, OfInverseMapsMovesNothing) {
 }
 
 /// How much of a pixel has a source point, by points of a Fibonacci lattice; no number where anything but edges of pictures in the
-/// middle decides that.
+/// middle, and ends of the maps that draw them, decides that.
 Real share_of(const std::vector<Link>& links, int x, int y) {
     constexpr int kPoints = 610, kStep = 377;
     const Chart& source = links.back().picture.maps[0].layers[0].border.chart();
@@ -675,8 +675,11 @@ Real share_of(const std::vector<Link>& links, int x, int y) {
         bool is_in = true;
         for (std::size_t i = 0; i < links.size() && is_in; ++i) {
             p = links[i].truth(p);
-            if (!std::isfinite(p.x) || !std::isfinite(p.y)) return kNone;
-            if (i + 1 == links.size()) break;
+            if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
+                if (i == 0) return kNone;
+                is_in = false;
+            }
+            if (!is_in || i + 1 == links.size()) break;
             const Size size = links[i + 1].size();
             if (links[i].closes) p.x -= std::floor(p.x / size.width) * size.width;
             is_in = p.x >= 0 && p.x <= size.width && p.y >= 0 && p.y <= size.height;

@@ -43,7 +43,6 @@ ChainMap::ChainMap(std::shared_ptr<const MapLink> outer, std::shared_ptr<const M
     : m_outer(std::move(outer)),
       m_inner(std::move(inner)),
       m_middle(middle),
-      m_inner_is_chain(dynamic_cast<const LinkOf<ChainMap>*>(m_inner.get()) != nullptr),
       m_pieces(pieces_of(*m_inner, middle.overscan)) {}
 
 Point<double> ChainMap::shift_about(double x) const {
@@ -92,8 +91,8 @@ Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Loc
     if (misses(whole)) return Cover::outside;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
     if (!local.inner || meets_edge(whole) || m_pieces.holding(at.x, at.y) != local.piece) return Cover::mixed;
-    // Edges that the inner map has on its way are crossed by whole pixels too.
-    const Point<Interval>& points = m_inner_is_chain ? whole : at;
+    // Where the inner map ends, whole pixels are crossed too.
+    const Point<Interval>& points = m_inner->may_end() ? whole : at;
     const Cover inner = m_inner->cover(points.x, points.y, local.piece, local.inner, across_seam);
     return inner == Cover::partial ? Cover::mixed : inner;
 }
@@ -102,22 +101,24 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
                              bool in_long_double) const {
     const double error = m_outer->exact_error(x, y, piece, off, in_long_double);
     if (!(error < HUGE_VAL)) return HUGE_VAL;
-    const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
-    const Cover cover = m_outer->cover(x, y, piece, place, /*across_seam=*/true);
-    if (cover == Cover::outside) return 0;
     // A box that holds the outer points, the true ones and the computed ones.
     Point<Interval> points;
-    if (cover == Cover::inside) {
-        points = m_outer->read(Point<Interval>{x, y}, place);
-    } else if (const auto all = m_outer->points_of(x, y)) {
+    if (const auto all = m_outer->points_of(x, y)) {
         points = *all;
     } else {
-        if (!is_point(x) || !is_point(y)) return HUGE_VAL;
-        Point<double> at;
-        int outer_piece = 0;
-        // Whether there is one is certain, as the error is not infinite.
-        if (!m_outer->exact(x.lo, y.lo, piece, at, outer_piece)) return 0;
-        points = {Interval(at.x), Interval(at.y)};
+        const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
+        const Cover cover = m_outer->cover(x, y, piece, place, /*across_seam=*/true);
+        if (cover == Cover::outside) return 0;
+        if (cover == Cover::inside) {
+            points = m_outer->read(Point<Interval>{x, y}, place);
+        } else {
+            if (!is_point(x) || !is_point(y)) return HUGE_VAL;
+            Point<double> at;
+            int outer_piece = 0;
+            // Whether there is one is certain, as the error is not infinite.
+            if (!m_outer->exact(x.lo, y.lo, piece, at, outer_piece)) return 0;
+            points = {Interval(at.x), Interval(at.y)};
+        }
     }
     const int period = m_outer->source_period();
     const Point<double> shift = shift_about(middle_of(points.x));
@@ -152,29 +153,79 @@ double ChainMap::error_from(const Point<Interval>& box, double off, bool in_long
                                 part_of(box.y, all.y0 - off, all.y1 + off), 0, off, in_long_double);
 }
 
+int ChainMap::piece_near(double x, double y) const {
+    const Box& frame = m_pieces.frame();
+    return piece_at(std::clamp<double>(x, frame.x0, frame.x1), std::clamp<double>(y, frame.y0, frame.y1));
+}
+
 template <class T>
-bool ChainMap::add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const {
-    using J = Jet1<T>;
+std::optional<Point<Jet1<T>>> ChainMap::middle_of_jets(const Point<Jet1<T>>& p, int piece) const {
     const Interval x(p.x.c[0]), y(p.y.c[0]);
     const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
-    if (m_outer->cover(x, y, piece, place, /*across_seam=*/true) != Cover::inside) return false;
-    Point<J> at = m_outer->read(p, place);
-    at = in_middle(at, shift_about(middle_of(at.x.c[0])));
-    if (!m_outer->add_edges(p, piece, edges)) return false;
+    Point<Jet1<T>> at = m_outer->read(p, place);
+    if (m_outer->cover(x, y, piece, place, /*across_seam=*/true) != Cover::inside) {
+        // At one point the exact one will do, with the derivatives that the map has there.
+        if constexpr (!std::is_same_v<T, double>) return {};
+        Point<double> exact;
+        int outer_piece = 0;
+        if (!m_outer->exact(middle_of(x), middle_of(y), piece, exact, outer_piece)) return {};
+        at.x.c[0] = T(exact.x), at.y.c[0] = T(exact.y);
+    }
+    return in_middle(at, shift_about(middle_of(at.x.c[0])));
+}
+
+std::optional<Point<Interval>> ChainMap::middle_box(const Interval& x, const Interval& y, int piece) const {
+    Point<Interval> points;
+    const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
+    if (m_outer->cover(x, y, piece, place, /*across_seam=*/true) == Cover::inside)
+        points = m_outer->read(Point<Interval>{x, y}, place);
+    else if (const auto all = m_outer->points_of(x, y))
+        points = *all;
+    else
+        return {};
+    return in_middle(points, shift_about(middle_of(points.x)));
+}
+
+bool ChainMap::is_clear_beyond(const Interval& x, const Interval& y, int piece) const {
+    const std::optional<Point<Interval>> points = middle_box(x, y, piece);
+    if (!points || (meets_edge(*points) && !m_pieces.have_gaps())) return false;
+    const int nearest = piece_near(middle_of(points->x), middle_of(points->y));
+    return nearest >= 0 && m_inner->is_clear(points->x, points->y, nearest);
+}
+
+bool ChainMap::ends_beyond(const Interval& x, const Interval& y, int piece) const {
+    if (!m_inner->may_end()) return false;
+    const std::optional<Point<Interval>> points = middle_box(x, y, piece);
+    if (!points) return true;
+    const int nearest = piece_near(middle_of(points->x), middle_of(points->y));
+    return nearest < 0 || !m_inner->is_clear(points->x, points->y, nearest);
+}
+
+bool ChainMap::add_ends_beyond(const Point<Jet1<double>>& p, int piece,
+                               std::vector<Jet1<double>>& edges) const {
+    const std::optional<Point<Jet1<double>>> at = middle_of_jets(p, piece);
+    if (!at) return false;
+    const int nearest = piece_near(at->x.c[0], at->y.c[0]);
+    return nearest >= 0 && m_inner->add_ends(*at, nearest, edges);
+}
+
+template <class T>
+bool ChainMap::add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const {
+    const std::optional<Point<Jet1<T>>> at = middle_of_jets(p, piece);
+    if (!at || !m_outer->add_edges(p, piece, edges)) return false;
     if (m_pieces.have_gaps()) return true;
     const Box& frame = m_pieces.frame();
     if (m_outer->source_period() == 0) {
-        edges.push_back(at.x - double(frame.x0));
-        edges.push_back(double(frame.x1) - at.x);
+        edges.push_back(at->x - double(frame.x0));
+        edges.push_back(double(frame.x1) - at->x);
     }
     if (!m_middle.has_poles) {
-        edges.push_back(at.y - double(frame.y0));
-        edges.push_back(double(frame.y1) - at.y);
+        edges.push_back(at->y - double(frame.y0));
+        edges.push_back(double(frame.y1) - at->y);
     }
     // The inner map's own edges, of its nearest piece.
-    const int nearest = piece_at(std::clamp<double>(middle_of(at.x.c[0]), frame.x0, frame.x1),
-                                 std::clamp<double>(middle_of(at.y.c[0]), frame.y0, frame.y1));
-    return nearest >= 0 && m_inner->add_edges(at, nearest, edges);
+    const int nearest = piece_near(middle_of(at->x.c[0]), middle_of(at->y.c[0]));
+    return nearest >= 0 && m_inner->add_edges(*at, nearest, edges);
 }
 template bool ChainMap::add_edges(const Point<Jet1<double>>&, int, std::vector<Jet1<double>>&) const;
 template bool ChainMap::add_edges(const Point<Jet1<Interval>>&, int, std::vector<Jet1<Interval>>&) const;

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <concepts>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -88,6 +89,19 @@ class ChainMap {
     template <class T>
     bool add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const;
 
+    // Where maps end (MapLink). `beyond`: of the pictures in the middle alone.
+    bool may_end() const { return true; }
+    bool is_clear(const Interval& x, const Interval& y, int piece) const {
+        return m_outer->is_clear(x, y, piece) && is_clear_beyond(x, y, piece);
+    }
+    bool is_clear_beyond(const Interval& x, const Interval& y, int piece) const;
+    /// May a map that draws a picture in the middle end in a box?
+    bool ends_beyond(const Interval& x, const Interval& y, int piece) const;
+    bool add_ends(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const {
+        return m_outer->add_ends(p, piece, edges) && add_ends_beyond(p, piece, edges);
+    }
+    bool add_ends_beyond(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const;
+
   private:
     /// A point of the picture in the middle, from the outer map's.
     template <class T>
@@ -104,6 +118,13 @@ class ChainMap {
         const Real y = m_middle.has_poles ? std::clamp<Real>(p.y, 0, m_inner->target_size().height) : p.y;
         return {p.x - std::floor(p.x / period) * period, y};
     }
+    /// The point of the picture in the middle, shifted into it, and how it moves with a target point; none where it is not known.
+    template <class T>
+    std::optional<Point<Jet1<T>>> middle_of_jets(const Point<Jet1<T>>& p, int piece) const;
+    /// A box that holds the points of the picture in the middle, shifted into it; none where that is not known.
+    std::optional<Point<Interval>> middle_box(const Interval& x, const Interval& y, int piece) const;
+    /// The piece of the picture in the middle that is nearest to a point.
+    int piece_near(double x, double y) const;
     /// The shift into the picture in the middle of the outer map's points near x.
     Point<double> shift_about(double x) const;
     /// The piece of the picture in the middle that holds a point; -1 where there is none.
@@ -120,7 +141,6 @@ class ChainMap {
 
     std::shared_ptr<const MapLink> m_outer, m_inner;
     MiddlePicture m_middle;
-    bool m_inner_is_chain;
     PieceFinder m_pieces;  ///< of the picture in the middle
 };
 

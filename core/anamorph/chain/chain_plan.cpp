@@ -11,14 +11,17 @@ template class FormulaPlan<ChainMap>;
 void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<PartialPixel>& pixels) const {
     using D = Jet1<double>;
     using I = Jet1<Interval>;
-    const auto edges_at = [&](double x, double y, std::vector<D>& to) {
-        return map().add_edges(Point<D>{D::variable(x, 1, 0), D::variable(y, 0, 1)}, piece, to);
+    const Interval x(block.x0, block.x1), y(block.y0, block.y1);
+    if (map().is_clear_beyond(x, y, piece)) return;
+    const auto at = [](double px, double py) {
+        return Point<D>{D::variable(px, 1, 0), D::variable(py, 0, 1)};
     };
+    // Where no map ends only pixels that an edge may cross need to be looked at.
     std::vector<D> middle, edges;
     std::vector<I> over;
-    const Interval x(block.x0, block.x1), y(block.y0, block.y1);
     const bool are_known =
-        edges_at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi), middle) &&
+        !map().ends_beyond(x, y, piece) &&
+        map().add_edges(at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi)), piece, middle) &&
         map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, over) &&
         middle.size() == over.size();
     const EdgesOverBox near(block, middle, over);
@@ -26,7 +29,10 @@ void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<P
         for (int i = part.x0; i < part.x1; ++i) {
             if (are_known && !near.may_cross(i, j)) continue;
             edges.clear();
-            if (!edges_at(i + 0.5, j + 0.5, edges)) continue;
+            const Point<D> p = at(i + 0.5, j + 0.5);
+            const bool has_point = map().add_ends_beyond(p, piece, edges);
+            // Beyond an end of a map nothing is known of what follows.
+            if (!map().add_edges(p, piece, edges) && (has_point || edges.empty())) continue;
             const PartialPixel pixel = part_within(i, j, edges);
             if (pixel.share > 0 && pixel.share < 1) pixels.push_back(pixel);
         }

@@ -239,6 +239,28 @@ class InverseSubdivider {
         aim(box);
         return gather() ? LocalInverse() : invert();
     }
+    /// A box that holds all source points of those of a box.
+    std::optional<Point<Interval>> points_over(const Interval& x, const Interval& y) {
+        if (roots_over(x, y) != Roots::one) return {};
+        Point<Interval> all{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+        const auto add = [](Interval& to, double line, double cell, double middle, double size,
+                            const Part& z) {
+            const double at = line + (middle + size * z.middle) * cell, reach = size * z.half * cell;
+            to = {std::min(to.lo, at - reach), std::max(to.hi, at + reach)};
+        };
+        for (const Near& near : m_near) {
+            const Sheet& sheet = *near.sheet;
+            const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(sheet.cell)];
+            add(all.x, cell.x0, cell.x1 - cell.x0, sheet.s, sheet.hs, near.s);
+            add(all.y, cell.y0, cell.y1 - cell.y0, sheet.t, sheet.ht, near.t);
+        }
+        // What computed ones are off, and what rounds here.
+        double error = 0;
+        for (const Near& near : m_near) error = std::max(error, 2 * near.sheet->error);
+        const Interval off(-error, error);
+        return Point<Interval>{all.x + off, all.y + off};
+    }
+
     /// Has every point of a box certainly one source point, or certainly none?
     enum class Roots { none, one, unknown };
     Roots roots_over(const Interval& x, const Interval& y) {
@@ -650,7 +672,7 @@ class InverseSubdivider {
     std::shared_ptr<Bicubics> m_bicubics;  ///< of m_blocks, if there are any
     BlockWriter m_writer;
     double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
-    int m_narrowings = 3;  ///< steps that sheets are narrowed by, each to a quarter
+    int m_narrowings = 3;                         ///< steps that sheets are narrowed by, each to a quarter
     std::vector<Near> m_near;
     mutable std::array<KnownCell, 16> m_known;
     mutable std::size_t m_next_known = 0;
@@ -725,6 +747,11 @@ class InverseWindows final : public WindowSource {
             default:
                 return HUGE_VAL;
         }
+    }
+
+    std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const override {
+        Blocks none;
+        return InverseSubdivider(*m_plan, HUGE_VAL, none).points_over(x, y);
     }
 
   private:

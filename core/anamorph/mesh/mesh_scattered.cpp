@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -356,6 +357,26 @@ class TriangleMap {
     template <class T>
     Point<T> operator()(const T& x, const T& y, const Local& local) const {
         return local(x, y);
+    }
+    /// MapLink::points_of(): of all cubics that the box meets.
+    std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const {
+        const Bounds all{x.lo, y.lo, x.hi, y.hi};
+        std::optional<Point<Interval>> points;
+        const auto hull = [](const Interval& a, const Interval& b) {
+            return Interval(std::min(a.lo, b.lo), std::max(a.hi, b.hi));
+        };
+        map().tree().each(all, [&](std::int32_t i) {
+            const CubicTriangle& t = map().triangles()[static_cast<std::size_t>(i)];
+            if (!t.meets(all)) return;
+            const Point<Interval> here = map().at(t, x, y);
+            const double error = exact_rounding(map(), t, all);
+            const Interval off(-error, error);
+            const Point<Interval> with_error{here.x + off, here.y + off};
+            points = points ? Point<Interval>{hull(points->x, with_error.x), hull(points->y, with_error.y)}
+                            : with_error;
+        });
+        if (!points || !(magnitude(points->x) < kFarthest && magnitude(points->y) < kFarthest)) return {};
+        return points;
     }
     template <std::floating_point Real>
     bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {

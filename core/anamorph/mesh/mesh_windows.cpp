@@ -123,37 +123,60 @@ WindowCubic MeshWindows::cubic_over(const Box& window, double most) const {
     return cubic;
 }
 
-/// Where points are off by `off`, the map moves them by that times its slope at most, which is its coefficients' of each cell that
-/// the box meets: a power of a parameter in [-1, 1] changes by no more than its degree.
-double MeshWindows::exact_error(const Interval& x, const Interval& y, double off) const {
+template <class Body>
+void MeshWindows::each_part(const Interval& x, const Interval& y, const Body& body) const {
     const Bounds all = with_neighbors({x.lo, y.lo, x.hi, y.hi});
-    double rounding = 0, slope = 0;
     m_mesh->each_cell(all.x0, all.y0, all.x1, all.y1, [&](const MeshCell& cell) {
         const Patch patch = m_mesh->patch(cell);
-        rounding = std::max(rounding, exact_rounding(*m_mesh, cell, patch));
-        if (off == 0) return;
         // The outermost cells go on beyond the picture.
-        const auto reach = [](double from, double to, const std::vector<double>& lines, double low,
-                              double high) {
-            const double a = from <= lines.front() ? std::min(from, low) : from,
-                         b = to >= lines.back() ? std::max(to, high) : to;
+        const auto part = [](double from, double to, const std::vector<double>& lines, double low,
+                             double high) {
+            const double a = from <= lines.front() ? low : std::max(from, low),
+                         b = to >= lines.back() ? high : std::min(to, high);
             return Part{(0.5 * (a + b) - from) / (to - from), 0.5 * (b - a) / (to - from)};
         };
-        const Part s = reach(cell.x0, cell.x1, m_mesh->x_lines(), all.x0, all.x1),
-                   t = reach(cell.y0, cell.y1, m_mesh->y_lines(), all.y0, all.y1);
-        const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
-        const Bicubic f = restricted(powers_of(*m_mesh, cell, patch), s, t);
-        double by_s[2] = {}, by_t[2] = {};
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) {
-                by_s[0] += i * std::fabs(f.x[i][j]), by_s[1] += i * std::fabs(f.y[i][j]);
-                by_t[0] += j * std::fabs(f.x[i][j]), by_t[1] += j * std::fabs(f.y[i][j]);
-            }
-        const double here = std::hypot(std::hypot(by_s[0], by_s[1]) / (s.half * w),
-                                       std::hypot(by_t[0], by_t[1]) / (t.half * h));
-        if (!(here <= slope)) slope = here;
+        const Part s = part(cell.x0, cell.x1, m_mesh->x_lines(), all.x0, all.x1),
+                   t = part(cell.y0, cell.y1, m_mesh->y_lines(), all.y0, all.y1);
+        body(cell, patch, s, t, restricted(powers_of(*m_mesh, cell, patch), s, t));
     });
-    return off == 0 ? rounding : (rounding + slope * off) * rounded_detail::kUp;
+}
+
+/// Where points are off by `off`, the map moves them by that times its slope at most, which is its coefficients' on what of the box
+/// lies in each cell: a power of a parameter in [-1, 1] changes by no more than its degree.
+double MeshWindows::exact_error(const Interval& x, const Interval& y, double off) const {
+    if (off == 0) return exact_rounding_by_cells(*m_mesh, with_neighbors({x.lo, y.lo, x.hi, y.hi}));
+    double rounding = 0, slope = 0;
+    each_part(
+        x, y, [&](const MeshCell& cell, const Patch& patch, const Part& s, const Part& t, const Bicubic& f) {
+            const double here = exact_rounding(*m_mesh, cell, patch);
+            if (!(here <= rounding)) rounding = here;
+            double by_s[2] = {}, by_t[2] = {};
+            for (int i = 0; i < 4; ++i)
+                for (int j = 0; j < 4; ++j) {
+                    by_s[0] += i * std::fabs(f.x[i][j]), by_s[1] += i * std::fabs(f.y[i][j]);
+                    by_t[0] += j * std::fabs(f.x[i][j]), by_t[1] += j * std::fabs(f.y[i][j]);
+                }
+            const double steep = std::hypot(std::hypot(by_s[0], by_s[1]) / (s.half * (cell.x1 - cell.x0)),
+                                            std::hypot(by_t[0], by_t[1]) / (t.half * (cell.y1 - cell.y0)));
+            if (!(steep <= slope)) slope = steep;
+        });
+    return (rounding + slope * off) * rounded_detail::kUp;
+}
+
+std::optional<Point<Interval>> MeshWindows::points_of(const Interval& x, const Interval& y) const {
+    Point<Interval> all{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+    each_part(x, y,
+              [&](const MeshCell& cell, const Patch& patch, const Part&, const Part&, const Bicubic& f) {
+                  const double rounding = double_rounding(*m_mesh, cell, patch);
+                  const auto add = [&](Interval& to, const double(&c)[4][4]) {
+                      const double reach = sum_of_magnitudes(c) - std::fabs(c[0][0]) + rounding;
+                      to = {std::min(to.lo, c[0][0] - reach), std::max(to.hi, c[0][0] + reach)};
+                  };
+                  add(all.x, f.x);
+                  add(all.y, f.y);
+              });
+    const bool is_near = magnitude(all.x) < kFarthest && magnitude(all.y) < kFarthest;
+    return is_near ? std::optional(all) : std::nullopt;
 }
 
 }  // namespace anamorph

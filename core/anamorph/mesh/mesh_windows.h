@@ -28,8 +28,14 @@ class MeshWindows final : public WindowSource {
     double exact_error(const Interval& x, const Interval& y, double off) const override;
     Jacobian jacobian(double x, double y) const override;
     WindowCubic cubic_over(const Box& window, double most) const override;
+    std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const override;
 
   private:
+    /// Calls body(cell, patch, s, t, map) for the cells that meet a box: their part of it in parameters of the cell, and the map on that in
+    /// powers of parameters in [-1, 1].
+    template <class Body>
+    void each_part(const Interval& x, const Interval& y, const Body& body) const;
+
     std::shared_ptr<const Mesh> m_mesh;
 };
 

@@ -95,7 +95,29 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
                            std::vector<Jet1<double>>& edges) const = 0;
     virtual bool add_edges(const Point<Jet1<Interval>>& p, int piece,
                            std::vector<Jet1<Interval>>& edges) const = 0;
+
+    /// Does the map end inside of its target, or do pictures that it leads through have edges?
+    virtual bool may_end() const = 0;
+    /// Does it certainly end nowhere in a box, and lies that within all those edges?
+    virtual bool is_clear(const Interval& x, const Interval& y, int piece) const = 0;
+    /// Appends numbers that are positive on one side of where the map ends, near a target point, and negative on the other, where there
+    /// is no source point; in no unit. False where the point itself has none.
+    virtual bool add_ends(const Point<Jet1<double>>& p, int piece,
+                          std::vector<Jet1<double>>& edges) const = 0;
 };
+
+/// A function of target points as add_ends() gives them: its value, and its derivatives by differences over half a pixel.
+template <class Function>
+Jet1<double> end_of(const Function& function, const Point<Jet1<double>>& p) {
+    constexpr double kStep = 0.25;
+    const double x = p.x.c[0], y = p.y.c[0];
+    const double by_x = (function(x + kStep, y) - function(x - kStep, y)) / (2 * kStep),
+                 by_y = (function(x, y + kStep) - function(x, y - kStep)) / (2 * kStep);
+    Jet1<double> end;
+    end.c[0] = function(x, y);
+    for (int k = 1; k < 3; ++k) end.c[k] = by_x * p.x.c[k] + by_y * p.y.c[k];
+    return end;
+}
 
 /// The link of a map.
 template <FormulaMap Map>
@@ -159,6 +181,35 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
     bool add_edges(const Point<Jet1<Interval>>& p, int piece,
                    std::vector<Jet1<Interval>>& edges) const override {
         return add_edges_of_map(p, piece, edges);
+    }
+
+    bool may_end() const override {
+        if constexpr (requires { m_map.may_end(); })
+            return m_map.may_end();
+        else
+            return requires {
+                m_map.end(0.0, 0.0, 0);
+            };
+    }
+    bool is_clear(const Interval& x, const Interval& y, int piece) const override {
+        if constexpr (requires { m_map.is_clear(x, y, piece); })
+            return m_map.is_clear(x, y, piece);
+        else if constexpr (requires { m_map.end(x, y, piece); })
+            return m_map.end(x, y, piece).lo > 0;
+        else
+            return true;
+    }
+    bool add_ends(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const override {
+        if constexpr (requires { m_map.add_ends(p, piece, edges); }) {
+            return m_map.add_ends(p, piece, edges);
+        } else if constexpr (requires { m_map.end(0.0, 0.0, piece); }) {
+            const Jet1<double> end = end_of([&](double x, double y) { return m_map.end(x, y, piece); }, p);
+            // Where it is not known which way the end lies it is left to the pixel's middle.
+            if (std::isfinite(end.c[0] + end.c[1] + end.c[2])) edges.push_back(end);
+            return end.c[0] > 0;
+        } else {
+            return true;
+        }
     }
 
   private:
