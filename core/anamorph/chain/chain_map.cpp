@@ -7,6 +7,10 @@
 namespace anamorph {
 namespace {
 
+// What of a pixel lies beyond an edge by no more than this does not count, a 512th of its area: pictures that end together do so but for
+// rounding, and for what bounds over boxes are too wide.
+constexpr double kHair = 0x1p-9;
+
 double middle_of(const Interval& a) {
     return 0.5 * (a.lo + a.hi);
 }
@@ -63,9 +67,30 @@ bool ChainMap::misses(const Point<Interval>& box) const {
 
 bool ChainMap::meets_edge(const Point<Interval>& box) const {
     const Box& frame = m_pieces.frame();
-    const auto is_within = [](const Interval& a, int from, int to) { return a.lo >= from && a.hi <= to; };
+    const auto is_within = [](const Interval& a, int from, int to) {
+        return a.lo >= from - kHair && a.hi <= to + kHair;
+    };
     return !(m_outer->source_period() > 0 || is_within(box.x, frame.x0, frame.x1)) ||
            !(m_middle.has_poles || is_within(box.y, frame.y0, frame.y1));
+}
+
+bool ChainMap::crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points,
+                            const Local& local) const {
+    if (!meets_edge(points)) return false;
+    // Where it is by little the bound may be too wide: over parts of the box it is narrower by their square.
+    constexpr double kLittle = 0.25;
+    constexpr int kParts = 4;
+    if (meets_edge({widened(points.x, -kLittle), widened(points.y, -kLittle)})) return true;
+    const auto part = [](const Interval& a, int i) {
+        const double step = (a.hi - a.lo) / kParts;
+        return Interval(a.lo + i * step, i + 1 < kParts ? a.lo + (i + 1) * step : a.hi);
+    };
+    for (int j = 0; j < kParts; ++j)
+        for (int i = 0; i < kParts; ++i)
+            if (meets_edge(in_middle(m_outer->read(Point<Interval>{part(x, i), part(y, j)}, local.outer),
+                                     local.shift)))
+                return true;
+    return false;
 }
 
 ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
@@ -90,11 +115,25 @@ Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Loc
         in_middle(m_outer->read(Point<Interval>{widened(x, 0.5), widened(y, 0.5)}, local.outer), local.shift);
     if (misses(whole)) return Cover::outside;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
-    if (!local.inner || meets_edge(whole) || m_pieces.holding(at.x, at.y) != local.piece) return Cover::mixed;
+    if (!local.inner || crosses_edge(widened(x, 0.5), widened(y, 0.5), whole, local) ||
+        m_pieces.holding(at.x, at.y) != local.piece)
+        return Cover::mixed;
     // Where the inner map ends, whole pixels are crossed too.
     const Point<Interval>& points = m_inner->may_end() ? whole : at;
     const Cover inner = m_inner->cover(points.x, points.y, local.piece, local.inner, across_seam);
     return inner == Cover::partial ? Cover::mixed : inner;
+}
+
+Jacobian ChainMap::jacobian(double x, double y, int piece) const {
+    Point<double> at;
+    int outer_piece = 0;
+    if (!m_outer->exact(x, y, piece, at, outer_piece)) return {NAN, NAN, NAN, NAN};
+    at = taken_back(at);
+    const int middle = piece_at(at.x, at.y);
+    if (middle < 0) return {NAN, NAN, NAN, NAN};
+    const Jacobian a = m_outer->jacobian(x, y, piece), b = m_inner->jacobian(at.x, at.y, middle);
+    return {b.x_i * a.x_i + b.x_j * a.y_i, b.y_i * a.x_i + b.y_j * a.y_i, b.x_i * a.x_j + b.x_j * a.y_j,
+            b.y_i * a.x_j + b.y_j * a.y_j};
 }
 
 double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, double off,
@@ -158,60 +197,61 @@ int ChainMap::piece_near(double x, double y) const {
     return piece_at(std::clamp<double>(x, frame.x0, frame.x1), std::clamp<double>(y, frame.y0, frame.y1));
 }
 
+ChainMap::Way ChainMap::way_of(const Interval& x, const Interval& y, int piece) const {
+    Way way{m_outer->place_around(middle_of(x), middle_of(y), piece)};
+    way.is_smooth = m_outer->cover(x, y, piece, way.place, /*across_seam=*/true) == Cover::inside;
+    if (way.is_smooth)
+        way.points = m_outer->read(Point<Interval>{x, y}, way.place);
+    else
+        way.points = m_outer->points_of(x, y);
+    if (way.points) way.points = in_middle(*way.points, shift_about(middle_of(way.points->x)));
+    return way;
+}
+
 template <class T>
-std::optional<Point<Jet1<T>>> ChainMap::middle_of_jets(const Point<Jet1<T>>& p, int piece) const {
-    const Interval x(p.x.c[0]), y(p.y.c[0]);
-    const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
-    Point<Jet1<T>> at = m_outer->read(p, place);
-    if (m_outer->cover(x, y, piece, place, /*across_seam=*/true) != Cover::inside) {
-        // At one point the exact one will do, with the derivatives that the map has there.
+std::optional<Point<Jet1<T>>> ChainMap::middle_of_jets(const Point<Jet1<T>>& p, int piece,
+                                                       const Way& way) const {
+    Point<Jet1<T>> at;
+    if (way.is_smooth) {
+        at = m_outer->read(p, way.place);
+    } else {
+        // At one point the exact one will do.
         if constexpr (!std::is_same_v<T, double>) return {};
+        const double x = middle_of(p.x.c[0]), y = middle_of(p.y.c[0]);
         Point<double> exact;
         int outer_piece = 0;
-        if (!m_outer->exact(middle_of(x), middle_of(y), piece, exact, outer_piece)) return {};
+        if (!m_outer->exact(x, y, piece, exact, outer_piece)) return {};
+        const Jacobian j = m_outer->jacobian(x, y, piece);
+        at = {p.x * j.x_i + p.y * j.x_j, p.x * j.y_i + p.y * j.y_j};
         at.x.c[0] = T(exact.x), at.y.c[0] = T(exact.y);
     }
     return in_middle(at, shift_about(middle_of(at.x.c[0])));
 }
 
-std::optional<Point<Interval>> ChainMap::middle_box(const Interval& x, const Interval& y, int piece) const {
-    Point<Interval> points;
-    const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
-    if (m_outer->cover(x, y, piece, place, /*across_seam=*/true) == Cover::inside)
-        points = m_outer->read(Point<Interval>{x, y}, place);
-    else if (const auto all = m_outer->points_of(x, y))
-        points = *all;
-    else
-        return {};
-    return in_middle(points, shift_about(middle_of(points.x)));
+bool ChainMap::is_clear_beyond(const Way& way) const {
+    if (!way.points || (meets_edge(*way.points) && !m_pieces.have_gaps())) return false;
+    const int nearest = piece_near(middle_of(way.points->x), middle_of(way.points->y));
+    return nearest >= 0 && m_inner->is_clear(way.points->x, way.points->y, nearest);
 }
 
-bool ChainMap::is_clear_beyond(const Interval& x, const Interval& y, int piece) const {
-    const std::optional<Point<Interval>> points = middle_box(x, y, piece);
-    if (!points || (meets_edge(*points) && !m_pieces.have_gaps())) return false;
-    const int nearest = piece_near(middle_of(points->x), middle_of(points->y));
-    return nearest >= 0 && m_inner->is_clear(points->x, points->y, nearest);
+bool ChainMap::ends_beyond(const Way& way) const {
+    if (!way.points) return m_inner->may_end();
+    const int nearest = piece_near(middle_of(way.points->x), middle_of(way.points->y));
+    return nearest < 0 || m_inner->may_end_in(way.points->x, way.points->y, nearest);
 }
 
-bool ChainMap::ends_beyond(const Interval& x, const Interval& y, int piece) const {
-    if (!m_inner->may_end()) return false;
-    const std::optional<Point<Interval>> points = middle_box(x, y, piece);
-    if (!points) return true;
-    const int nearest = piece_near(middle_of(points->x), middle_of(points->y));
-    return nearest < 0 || !m_inner->is_clear(points->x, points->y, nearest);
-}
-
-bool ChainMap::add_ends_beyond(const Point<Jet1<double>>& p, int piece,
+bool ChainMap::add_ends_beyond(const Point<Jet1<double>>& p, int piece, const Way& way,
                                std::vector<Jet1<double>>& edges) const {
-    const std::optional<Point<Jet1<double>>> at = middle_of_jets(p, piece);
+    const std::optional<Point<Jet1<double>>> at = middle_of_jets(p, piece, way);
     if (!at) return false;
     const int nearest = piece_near(at->x.c[0], at->y.c[0]);
     return nearest >= 0 && m_inner->add_ends(*at, nearest, edges);
 }
 
 template <class T>
-bool ChainMap::add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const {
-    const std::optional<Point<Jet1<T>>> at = middle_of_jets(p, piece);
+bool ChainMap::add_edges(const Point<Jet1<T>>& p, int piece, const Way& way,
+                         std::vector<Jet1<T>>& edges) const {
+    const std::optional<Point<Jet1<T>>> at = middle_of_jets(p, piece, way);
     if (!at || !m_outer->add_edges(p, piece, edges)) return false;
     if (m_pieces.have_gaps()) return true;
     const Box& frame = m_pieces.frame();
@@ -227,7 +267,9 @@ bool ChainMap::add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>
     const int nearest = piece_near(middle_of(at->x.c[0]), middle_of(at->y.c[0]));
     return nearest >= 0 && m_inner->add_edges(*at, nearest, edges);
 }
-template bool ChainMap::add_edges(const Point<Jet1<double>>&, int, std::vector<Jet1<double>>&) const;
-template bool ChainMap::add_edges(const Point<Jet1<Interval>>&, int, std::vector<Jet1<Interval>>&) const;
+template bool ChainMap::add_edges(const Point<Jet1<double>>&, int, const Way&,
+                                  std::vector<Jet1<double>>&) const;
+template bool ChainMap::add_edges(const Point<Jet1<Interval>>&, int, const Way&,
+                                  std::vector<Jet1<Interval>>&) const;
 
 }  // namespace anamorph

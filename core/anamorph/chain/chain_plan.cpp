@@ -12,17 +12,19 @@ void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<P
     using D = Jet1<double>;
     using I = Jet1<Interval>;
     const Interval x(block.x0, block.x1), y(block.y0, block.y1);
-    if (map().is_clear_beyond(x, y, piece)) return;
+    const ChainMap::Way way = map().way_of(x, y, piece);
+    if (map().is_clear_beyond(way)) return;
     const auto at = [](double px, double py) {
         return Point<D>{D::variable(px, 1, 0), D::variable(py, 0, 1)};
     };
     // Where no map ends only pixels that an edge may cross need to be looked at.
+    const bool may_end = map().ends_beyond(way);
     std::vector<D> middle, edges;
     std::vector<I> over;
     const bool are_known =
-        !map().ends_beyond(x, y, piece) &&
-        map().add_edges(at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi)), piece, middle) &&
-        map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, over) &&
+        !may_end && way.is_smooth &&
+        map().add_edges(at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi)), piece, way, middle) &&
+        map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, way, over) &&
         middle.size() == over.size();
     const EdgesOverBox near(block, middle, over);
     for (int j = part.y0; j < part.y1; ++j)
@@ -30,9 +32,9 @@ void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<P
             if (are_known && !near.may_cross(i, j)) continue;
             edges.clear();
             const Point<D> p = at(i + 0.5, j + 0.5);
-            const bool has_point = map().add_ends_beyond(p, piece, edges);
+            const bool has_point = !may_end || map().add_ends_beyond(p, piece, way, edges);
             // Beyond an end of a map nothing is known of what follows.
-            if (!map().add_edges(p, piece, edges) && (has_point || edges.empty())) continue;
+            if (!map().add_edges(p, piece, way, edges) && (has_point || edges.empty())) continue;
             const PartialPixel pixel = part_within(i, j, edges);
             if (pixel.share > 0 && pixel.share < 1) pixels.push_back(pixel);
         }

@@ -226,7 +226,11 @@ std::shared_ptr<const MapLink> window_link(std::shared_ptr<const WindowSource> s
 std::shared_ptr<const MapLink> MeshPlan::link() const {
     if (!joins(m_scheme)) return nullptr;
     const auto mesh = std::make_shared<const Mesh>(m_mesh);
-    if (!m_lattice && CellMap::serves(m_mesh))
+    // Cells that are one to a block are formulas, unless larger parts of the map are smooth.
+    constexpr int kLarge = 64;
+    const bool has_large_cells = !m_lattice && CellMap::serves(m_mesh);
+    if (has_large_cells &&
+        !(m_tol > 0 && WindowMap(std::make_shared<const MeshWindows>(mesh), m_tol).is_smooth(kLarge)))
         return std::make_shared<const LinkOf<CellMap>>(CellMap(mesh), link_options(m_scheme, m_tol));
     return window_link(std::make_shared<const MeshWindows>(mesh), m_scheme, m_tol);
 }

@@ -307,7 +307,7 @@ class TriangleMap {
 
     explicit TriangleMap(std::shared_ptr<const ScatteredPlan> plan) : m_plan(std::move(plan)) {}
 
-    /// Are squares of 8 pixels about half of some places all over the picture each in one triangle?
+    /// Are squares of 16 pixels about half of some places all over the picture each in one triangle?
     bool has_large_triangles() const {
         constexpr int kTried = 16;
         const Size size = target_size();
@@ -315,7 +315,7 @@ class TriangleMap {
         for (int j = 0; j < kTried; ++j)
             for (int i = 0; i < kTried; ++i) {
                 const double x = (i + 0.5) * size.width / kTried, y = (j + 0.5) * size.height / kTried;
-                large += reach_in(map().triangle_at(x, y), x, y) >= 4;
+                large += reach_in(map().triangle_at(x, y), x, y) >= 8;
             }
         return 2 * large >= kTried * kTried;
     }
@@ -358,6 +358,7 @@ class TriangleMap {
     Point<T> operator()(const T& x, const T& y, const Local& local) const {
         return local(x, y);
     }
+    Jacobian jacobian(double x, double y, int piece) const { return m_plan->jacobian(x, y, piece); }
     /// MapLink::points_of(): of all cubics that the box meets.
     std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const {
         const Bounds all{x.lo, y.lo, x.hi, y.hi};

@@ -16,8 +16,6 @@ constexpr std::array kSteps{128, 64, 32, 16, 8};
 constexpr int side_of(int step) {
     return 2 * step + 4;
 }
-// Where no larger windows serve, blocks are too small to pay.
-constexpr int kLeastStep = 16;
 // Cubics are fitted to so many pixels each way, or one more.
 constexpr int kFitted = 8;
 // What cubics may be off where all pixels are exact, and cubics but tell where the map leads.
@@ -141,14 +139,14 @@ WindowMap::WindowMap(std::shared_ptr<const WindowSource> source, double tol)
     : m_source(std::move(source)),
       m_windows(std::make_shared<const Windows>(*m_source, tol > 0 ? WindowCubic::kShare * tol : kNearby)) {}
 
-bool WindowMap::is_smooth() const {
+bool WindowMap::is_smooth(int least_step) const {
     constexpr int kTried = 8;
     const Size size = target_size();
     int serving = 0;
     for (int j = 0; j < kTried; ++j)
         for (int i = 0; i < kTried; ++i)
             serving += m_windows->serving((i + 0.5) * size.width / kTried, (j + 0.5) * size.height / kTried,
-                                          kLeastStep) != nullptr;
+                                          least_step) != nullptr;
     return 2 * serving >= kTried * kTried;
 }
 

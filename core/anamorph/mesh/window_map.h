@@ -61,8 +61,10 @@ class WindowMap {
     /// `tol`: the tolerance that blocks are to hold, source pixels. Of 0 all pixels are exact, and cubics but tell how the map goes.
     WindowMap(std::shared_ptr<const WindowSource> source, double tol);
 
-    /// Do cubics serve, in windows that are large enough to pay, in at least half of some places all over the map?
-    bool is_smooth() const;
+    /// The least distance of windows that pay.
+    static constexpr int kLeastStep = 16;
+    /// Do cubics serve, in windows no nearer to each other, in at least half of some places all over the map?
+    bool is_smooth(int least_step = kLeastStep) const;
 
     // The members that make this a FormulaMap (plan/formula_map.h).
 
@@ -97,6 +99,7 @@ class WindowMap {
     std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const {
         return m_source->points_of(x, y);
     }
+    Jacobian jacobian(double x, double y, int) const { return m_source->jacobian(x, y); }
 
   private:
     class Windows;

@@ -85,6 +85,9 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
     virtual double exact_error(const Interval& x, const Interval& y, int piece, double off,
                                bool in_long_double) const = 0;
 
+    /// The derivative at a target point; no number where there is no source point.
+    virtual Jacobian jacobian(double x, double y, int piece) const = 0;
+
     /// A box that holds all source points of a box of the target, the true ones and those that exact() finds, though they lie on
     /// no one branch; none where that is not known, or where some have none.
     virtual std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const = 0;
@@ -98,6 +101,8 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
 
     /// Does the map end inside of its target, or do pictures that it leads through have edges?
     virtual bool may_end() const = 0;
+    /// May it end in a box?
+    virtual bool may_end_in(const Interval& x, const Interval& y, int piece) const = 0;
     /// Does it certainly end nowhere in a box, and lies that within all those edges?
     virtual bool is_clear(const Interval& x, const Interval& y, int piece) const = 0;
     /// Appends numbers that are positive on one side of where the map ends, near a target point, and negative on the other, where there
@@ -165,6 +170,16 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
                        bool in_long_double) const override {
         return in_long_double ? error_in<long double>(x, y, piece, off) : error_in<double>(x, y, piece, off);
     }
+    Jacobian jacobian(double x, double y, int piece) const override {
+        if constexpr (requires { m_map.jacobian(x, y, piece); }) {
+            return m_map.jacobian(x, y, piece);
+        } else {
+            using J = Jet1<double>;
+            const Point<J> p =
+                m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
+            return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+        }
+    }
     template <class T>
     Point<T> formula(const Point<T>& p, const LinkPlace& place) const {
         return m_map(p.x, p.y, local(place));
@@ -191,13 +206,19 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
                 m_map.end(0.0, 0.0, 0);
             };
     }
+    bool may_end_in(const Interval& x, const Interval& y, int piece) const override {
+        if constexpr (requires { m_map.may_end_in(x, y, piece); })
+            return m_map.may_end_in(x, y, piece);
+        else if constexpr (requires { m_map.end(x, y, piece); })
+            return !(m_map.end(x, y, piece).lo > 0);
+        else
+            return false;
+    }
     bool is_clear(const Interval& x, const Interval& y, int piece) const override {
         if constexpr (requires { m_map.is_clear(x, y, piece); })
             return m_map.is_clear(x, y, piece);
-        else if constexpr (requires { m_map.end(x, y, piece); })
-            return m_map.end(x, y, piece).lo > 0;
         else
-            return true;
+            return !may_end_in(x, y, piece);
     }
     bool add_ends(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const override {
         if constexpr (requires { m_map.add_ends(p, piece, edges); }) {
