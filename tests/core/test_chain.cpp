@@ -428,13 +428,15 @@ std::vector<ChainCase> warp_cases() {
     const auto lens = [=](const Settings& s) {
         return lens_link("brown:k1=-0.2,k2=0.05,k3=-0.004", LensMode::undistort, plate, plate, s);
     };
-    const auto turned = [=](const Settings& s) {
-        return pano_link(flat(middle, 80), flat({230, 180}, 74), {5, 4, 12}, s);
+    const auto turned = [=](const Settings& s, const Size& of) {
+        return pano_link(flat(of, 80), flat({230, 180}, 74), {5, 4, 12}, s);
     };
+    // So large that triangles are.
+    const Size large{600, 480};
     return {
         {"pano of a mesh of small cells",
          [=](const Settings& s) {
-             return std::vector{turned(s), dense_link(plate, middle, coarse(s))};
+             return std::vector{turned(s, middle), dense_link(plate, middle, coarse(s))};
          }},
         {"mesh of small cells, of lens",
          [=](const Settings& s) {
@@ -442,23 +444,23 @@ std::vector<ChainCase> warp_cases() {
          }},
         {"pano of points",
          [=](const Settings& s) {
-             return std::vector{turned(s), points_link(3, 6, plate, middle, coarse(s))};
+             return std::vector{turned(s, large), points_link(3, 4, plate, large, coarse(s))};
          },
          0.7},
         {"points of lens",
          [=](const Settings& s) {
-             return std::vector{points_link(4, 7, plate, middle, coarse(s)), lens(s)};
+             return std::vector{points_link(4, 4, plate, {480, 400}, coarse(s)), lens(s)};
          },
          0.7},
         {"pano of a mesh that pushes",
          [=](const Settings& s) {
-             return std::vector{turned(s), push_link(plate, middle, 1, 1, coarse(s))};
+             return std::vector{turned(s, middle), push_link(plate, middle, 1, 1, coarse(s))};
          },
          0.6},
         {"mesh that pushes, of points",
          [=](const Settings& s) {
-             return std::vector{push_link(plate, middle, 1, 2, coarse(s)),
-                                points_link(5, 4, {200, 170}, plate, coarse(s))};
+             return std::vector{push_link(large, middle, 1, 1, coarse(s)),
+                                points_link(5, 4, {200, 170}, large, coarse(s))};
          },
          0.9},
         {"mesh of small cells of points of a mesh that pushes, exactly",

@@ -74,23 +74,37 @@ bool ChainMap::meets_edge(const Point<Interval>& box) const {
            !(m_middle.has_poles || is_within(box.y, frame.y0, frame.y1));
 }
 
-bool ChainMap::crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points,
+bool ChainMap::crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points, int piece,
                             const Local& local) const {
     if (!meets_edge(points)) return false;
-    // Where it is by little the bound may be too wide: over parts of the box it is narrower by their square.
+    // Where it is by little the bound may be too wide. What rises across or down the box is least on one of its sides, where the map is
+    // read about the middle of that side.
     constexpr double kLittle = 0.25;
-    constexpr int kParts = 4;
     if (meets_edge({widened(points.x, -kLittle), widened(points.y, -kLittle)})) return true;
-    const auto part = [](const Interval& a, int i) {
-        const double step = (a.hi - a.lo) / kParts;
-        return Interval(a.lo + i * step, i + 1 < kParts ? a.lo + (i + 1) * step : a.hi);
+    using J = Jet<Interval, 1>;
+    const Point<J> slopes = m_outer->read(Point<J>{J::variable(x, 1, 0), J::variable(y, 0, 1)}, local.outer);
+    const auto on_side = [&](const Interval& side_x, const Interval& side_y) -> Point<Interval> {
+        const double at_x = middle_of(side_x), at_y = middle_of(side_y);
+        const LinkPlace place = m_outer->place_around(at_x, at_y, piece);
+        if (m_outer->cover(side_x, side_y, piece, place, /*across_seam=*/true) != Cover::inside)
+            return {Interval::all(), Interval::all()};
+        return in_middle(m_outer->read(Point<Interval>{side_x, side_y}, place), local.shift);
     };
-    for (int j = 0; j < kParts; ++j)
-        for (int i = 0; i < kParts; ++i)
-            if (meets_edge(in_middle(m_outer->read(Point<Interval>{part(x, i), part(y, j)}, local.outer),
-                                     local.shift)))
-                return true;
-    return false;
+    // The range of a coordinate, by its values on the sides that bound it.
+    const auto range = [&](Interval Point<Interval>::*coordinate, const J& slope) -> Interval {
+        if (slope.c[1].lo > 0 || slope.c[1].hi < 0) {
+            const Interval a = on_side(Interval(x.lo), y).*coordinate,
+                           b = on_side(Interval(x.hi), y).*coordinate;
+            return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+        }
+        if (slope.c[2].lo > 0 || slope.c[2].hi < 0) {
+            const Interval a = on_side(x, Interval(y.lo)).*coordinate,
+                           b = on_side(x, Interval(y.hi)).*coordinate;
+            return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+        }
+        return points.*coordinate;
+    };
+    return meets_edge({range(&Point<Interval>::x, slopes.x), range(&Point<Interval>::y, slopes.y)});
 }
 
 ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
@@ -115,7 +129,7 @@ Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Loc
         in_middle(m_outer->read(Point<Interval>{widened(x, 0.5), widened(y, 0.5)}, local.outer), local.shift);
     if (misses(whole)) return Cover::outside;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
-    if (!local.inner || crosses_edge(widened(x, 0.5), widened(y, 0.5), whole, local) ||
+    if (!local.inner || crosses_edge(widened(x, 0.5), widened(y, 0.5), whole, piece, local) ||
         m_pieces.holding(at.x, at.y) != local.piece)
         return Cover::mixed;
     // Where the inner map ends, whole pixels are crossed too.

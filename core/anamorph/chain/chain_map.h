@@ -156,7 +156,7 @@ class ChainMap {
     /// Does a box reach beyond an edge of the picture in the middle by more than a hair?
     bool meets_edge(const Point<Interval>& box) const;
     /// Do target points of a box, whose points in the middle lie in `points`?
-    bool crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points,
+    bool crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points, int piece,
                       const Local& local) const;
 
     double exact_error(const Interval& x, const Interval& y, int piece, double off,
