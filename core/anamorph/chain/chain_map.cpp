@@ -156,22 +156,20 @@ double ChainMap::exact_error(const Interval& x, const Interval& y, int piece, do
     if (!(error < HUGE_VAL)) return HUGE_VAL;
     // A box that holds the outer points, the true ones and the computed ones.
     Point<Interval> points;
-    if (const auto all = m_outer->points_of(x, y)) {
+    if (is_point(x) && is_point(y)) {
+        Point<double> at;
+        int outer_piece = 0;
+        // Whether there is one is certain, as the error is not infinite.
+        if (!m_outer->exact(x.lo, y.lo, piece, at, outer_piece)) return 0;
+        points = {Interval(at.x), Interval(at.y)};
+    } else if (const auto all = m_outer->points_of(x, y)) {
         points = *all;
     } else {
         const LinkPlace place = m_outer->place_around(middle_of(x), middle_of(y), piece);
         const Cover cover = m_outer->cover(x, y, piece, place, /*across_seam=*/true);
         if (cover == Cover::outside) return 0;
-        if (cover == Cover::inside) {
-            points = m_outer->read(Point<Interval>{x, y}, place);
-        } else {
-            if (!is_point(x) || !is_point(y)) return HUGE_VAL;
-            Point<double> at;
-            int outer_piece = 0;
-            // Whether there is one is certain, as the error is not infinite.
-            if (!m_outer->exact(x.lo, y.lo, piece, at, outer_piece)) return 0;
-            points = {Interval(at.x), Interval(at.y)};
-        }
+        if (cover != Cover::inside) return HUGE_VAL;
+        points = m_outer->read(Point<Interval>{x, y}, place);
     }
     const int period = m_outer->source_period();
     const Point<double> shift = shift_about(middle_of(points.x));

@@ -142,12 +142,14 @@ WindowMap::WindowMap(std::shared_ptr<const WindowSource> source, double tol)
 bool WindowMap::is_smooth(int least_step) const {
     constexpr int kTried = 8;
     const Size size = target_size();
-    int serving = 0;
+    int missing = 0;
     for (int j = 0; j < kTried; ++j)
-        for (int i = 0; i < kTried; ++i)
-            serving += m_windows->serving((i + 0.5) * size.width / kTried, (j + 0.5) * size.height / kTried,
-                                          least_step) != nullptr;
-    return 2 * serving >= kTried * kTried;
+        for (int i = 0; i < kTried; ++i) {
+            const double x = (i + 0.5) * size.width / kTried, y = (j + 0.5) * size.height / kTried;
+            missing += !m_windows->serving(x, y, least_step);
+            if (2 * missing > kTried * kTried) return false;
+        }
+    return true;
 }
 
 WindowMap::Local WindowMap::local_around(double x, double y, int) const {
