@@ -704,6 +704,16 @@ TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
                              pano_link(flat({90, 60}, 60), flat({300, 200}, 70), {4, 3, 10}, s),
                              pano_link(flat(plate, 100), flat({90, 60}, 60), {3, 2, 5}, s)};
                      }});
+    // A map that ends within its picture, at the rim of a circle, beyond which the oracle goes on.
+    cases.push_back(
+        {"twirl of an orthographic view of a sphere", [=](const Settings& s) {
+             Link inner = pano_link(view(Projection::equirectangular, {640, 320}, 360),
+                                    view(Projection::orthographic, {200, 200}, 180), {20, 30, 5}, s);
+             inner.truth = [goes_on = inner.truth](const Point<Real>& p) {
+                 return std::hypot(p.x - 100, p.y - 100) < 100 ? goes_on(p) : Point<Real>{kNone, kNone};
+             };
+             return std::vector{twirl_link({200, 200}, s), inner};
+         }});
     for (const ChainCase& c : cases)
         for (const Filter filter : {Filter::antialias, Filter::bilinear}) {
             if (filter == Filter::bilinear && c.name != "pano of lens") continue;
