@@ -16,6 +16,7 @@
 #include "anamorph/lens/lens_plan.h"
 #include "anamorph/mesh/mesh_file.h"
 #include "anamorph/mesh/mesh_warp.h"
+#include "anamorph/mesh/scattered.h"
 #include "anamorph/panorama/reproject.h"
 #include "block_points.h"
 #include "mesh_cases.h"
@@ -189,6 +190,75 @@ Link stmap_link(const Size& size, const Size& source, const StMapCase& how, cons
             truth};
 }
 
+/// A mesh of many cells that follow one smooth map.
+ControlMesh smooth_mesh(const Size& to, int columns, int rows, double bend, Direction direction) {
+    ControlMesh mesh;
+    mesh.columns = columns, mesh.rows = rows;
+    mesh.direction = direction;
+    for (int j = 0; j <= rows; ++j)
+        for (int i = 0; i <= columns; ++i) {
+            const double x = double(i) / columns, y = double(j) / rows;
+            mesh.vertices.push_back(
+                {to.width * (0.02 + 0.95 * x + bend * (0.02 * std::sin(4 * y) + 0.01 * std::cos(4 * x))),
+                 to.height * (0.03 + 0.94 * y + bend * (0.02 * std::sin(4 * x) - 0.03 * x * y))});
+        }
+    return mesh;
+}
+
+MeshWarpOptions warp_options(const Settings& settings) {
+    MeshWarpOptions options;
+    options.tol = settings.tol;
+    options.scheme = settings.scheme == Scheme::exact ? WarpScheme::exact : WarpScheme::automatic;
+    options.filter = settings.filter;
+    return options;
+}
+
+/// A mesh of cells of 7 x 6 pixels or so.
+Link dense_link(const Size& source, const Size& target, const Settings& settings) {
+    const ControlMesh mesh = smooth_mesh(source, target.width / 7, target.height / 6, 1, Direction::pull);
+    const auto truth = [oracle = std::make_shared<test::MeshOracle>(mesh, target, source, 1)](
+                           const Point<Real>& p) { return (*oracle)(p.x, p.y); };
+    return {warped_picture(WarpMap{"mesh", mesh}, source, target, warp_options(settings)), truth};
+}
+
+/// A mesh that pushes, and its inverse by Newton's iteration.
+Link push_link(const Size& source, const Size& target, int columns, int rows, const Settings& settings) {
+    const ControlMesh mesh = smooth_mesh(target, columns, rows, 0.3, Direction::push);
+    const auto truth = [source, target, oracle = std::make_shared<test::MeshOracle>(mesh, source, target, 1)](
+                           const Point<Real>& p) -> Point<Real> {
+        Point<Real> z{p.x * source.width / target.width, p.y * source.height / target.height};
+        for (int n = 0; n < 30; ++n) {
+            const Real step = 1e-6L;
+            const auto f = [&](Real dx, Real dy) { return (*oracle)(z.x + dx, z.y + dy); };
+            const Point<Real> at = f(0, 0), e = f(step, 0), w = f(-step, 0), s = f(0, step), m = f(0, -step);
+            const Real xx = (e.x - w.x) / (2 * step), yx = (e.y - w.y) / (2 * step),
+                       xy = (s.x - m.x) / (2 * step), yy = (s.y - m.y) / (2 * step);
+            const Real det = xx * yy - xy * yx, dx = p.x - at.x, dy = p.y - at.y;
+            const Point<Real> by{(yy * dx - xy * dy) / det, (xx * dy - yx * dx) / det};
+            z = {z.x + by.x, z.y + by.y};
+            if (std::fabs(by.x) + std::fabs(by.y) < 1e-16L) break;
+        }
+        const bool is_on = z.x >= 0 && z.x <= source.width && z.y >= 0 && z.y <= source.height;
+        return is_on ? z : Point<Real>{kNone, kNone};
+    };
+    return {warped_picture(WarpMap{"mesh", mesh}, source, target, warp_options(settings)), truth};
+}
+
+/// Pairs of points at random places, moved smoothly.
+Link points_link(unsigned seed, int count, const Size& source, const Size& target, const Settings& settings) {
+    test::Random random(seed);
+    ControlPoints points;
+    for (int i = 0; i < count; ++i) {
+        const double x = random.between(0, target.width), y = random.between(0, target.height);
+        points.pairs.push_back({x, y, x * source.width / target.width + 4 * std::sin(y / 50),
+                                y * source.height / target.height + 3 * std::cos(x / 60)});
+    }
+    const Scattered map(points, target, source, 1);
+    const auto truth = [oracle = std::make_shared<test::PointsOracle>(points, map, target, source)](
+                           const Point<Real>& p) { return (*oracle)(p.x, p.y); };
+    return {warped_picture(WarpMap{"points", points}, source, target, warp_options(settings)), truth};
+}
+
 /// The chain of links, from the outermost to the innermost.
 Joined joined_of(const std::vector<Link>& links, const Point<int>& origin = {0, 0}) {
     Joined all{links.back().picture, ""};
@@ -344,6 +414,65 @@ std::vector<ChainCase> stmap_cases() {
     };
 }
 
+/// Chains with warps that are read as cubics, too.
+std::vector<ChainCase> warp_cases() {
+    const Size plate{310, 206}, middle{260, 220};
+    const auto coarse = [](Settings s) {
+        if (s.tol > 0 && s.tol < 1e-2) s.tol = 1e-2;
+        return s;
+    };
+    const auto exactly = [](Settings s) {
+        s.tol = 0;
+        return s;
+    };
+    const auto lens = [=](const Settings& s) {
+        return lens_link("brown:k1=-0.2,k2=0.05,k3=-0.004", LensMode::undistort, plate, plate, s);
+    };
+    const auto turned = [=](const Settings& s, const Size& of) {
+        return pano_link(flat(of, 80), flat({230, 180}, 74), {5, 4, 12}, s);
+    };
+    // So large that triangles are.
+    const Size large{600, 480};
+    return {
+        {"pano of a mesh of small cells",
+         [=](const Settings& s) {
+             return std::vector{turned(s, middle), dense_link(plate, middle, coarse(s))};
+         }},
+        {"mesh of small cells, of lens",
+         [=](const Settings& s) {
+             return std::vector{dense_link(plate, middle, coarse(s)), lens(s)};
+         }},
+        {"pano of points",
+         [=](const Settings& s) {
+             return std::vector{turned(s, large), points_link(3, 4, plate, large, coarse(s))};
+         },
+         0.7},
+        {"points of lens",
+         [=](const Settings& s) {
+             return std::vector{points_link(4, 4, plate, {480, 400}, coarse(s)), lens(s)};
+         },
+         0.7},
+        {"pano of a mesh that pushes",
+         [=](const Settings& s) {
+             return std::vector{turned(s, middle), push_link(plate, middle, 1, 1, coarse(s))};
+         },
+         0.6},
+        {"mesh that pushes, of points",
+         [=](const Settings& s) {
+             return std::vector{push_link(large, middle, 1, 1, coarse(s)),
+                                points_link(5, 4, {200, 170}, large, coarse(s))};
+         },
+         0.9},
+        {"mesh of small cells of points of a mesh that pushes, exactly",
+         [=](const Settings& s) {
+             return std::vector{dense_link(middle, {150, 120}, exactly(s)),
+                                points_link(6, 20, {200, 170}, middle, exactly(s)),
+                                push_link(plate, {200, 170}, 3, 3, exactly(s))};
+         },
+         1.1},
+    };
+}
+
 std::vector<ChainCase> chain_cases() {
     const Size plate{310, 206};
     const View sphere = view(Projection::equirectangular, {640, 320}, 360);
@@ -406,10 +535,11 @@ TEST(Chain, HoldsEveryTolerance) {
     std::mt19937 random(kSeed);
     const double tols[] = {1, 1.0 / 16, 0.01, 1e-3, 1e-5, 1e-7, 0};
     std::vector<ChainCase> cases = chain_cases();
-    for (const ChainCase& c : stmap_cases()) {
-        cases.push_back(c);
-        cases.back().least_tol = 1e-2;
-    }
+    for (const auto& coarse : {stmap_cases(), warp_cases()})
+        for (const ChainCase& c : coarse) {
+            cases.push_back(c);
+            cases.back().least_tol = 1e-2;
+        }
     for (const ChainCase& c : cases)
         for (int n = 0; n < 3; ++n) {
             Settings settings;
@@ -537,7 +667,7 @@ TEST(Chain, OfInverseMapsMovesNothing) {
 }
 
 /// How much of a pixel has a source point, by points of a Fibonacci lattice; no number where anything but edges of pictures in the
-/// middle decides that.
+/// middle, and ends of the maps that draw them, decides that.
 Real share_of(const std::vector<Link>& links, int x, int y) {
     constexpr int kPoints = 610, kStep = 377;
     const Chart& source = links.back().picture.maps[0].layers[0].border.chart();
@@ -547,8 +677,11 @@ Real share_of(const std::vector<Link>& links, int x, int y) {
         bool is_in = true;
         for (std::size_t i = 0; i < links.size() && is_in; ++i) {
             p = links[i].truth(p);
-            if (!std::isfinite(p.x) || !std::isfinite(p.y)) return kNone;
-            if (i + 1 == links.size()) break;
+            if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
+                if (i == 0) return kNone;
+                is_in = false;
+            }
+            if (!is_in || i + 1 == links.size()) break;
             const Size size = links[i + 1].size();
             if (links[i].closes) p.x -= std::floor(p.x / size.width) * size.width;
             is_in = p.x >= 0 && p.x <= size.width && p.y >= 0 && p.y <= size.height;
@@ -571,6 +704,16 @@ TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
                              pano_link(flat({90, 60}, 60), flat({300, 200}, 70), {4, 3, 10}, s),
                              pano_link(flat(plate, 100), flat({90, 60}, 60), {3, 2, 5}, s)};
                      }});
+    // A map that ends within its picture, at the rim of a circle, beyond which the oracle goes on.
+    cases.push_back(
+        {"twirl of an orthographic view of a sphere", [=](const Settings& s) {
+             Link inner = pano_link(view(Projection::equirectangular, {640, 320}, 360),
+                                    view(Projection::orthographic, {200, 200}, 180), {20, 30, 5}, s);
+             inner.truth = [goes_on = inner.truth](const Point<Real>& p) {
+                 return std::hypot(p.x - 100, p.y - 100) < 100 ? goes_on(p) : Point<Real>{kNone, kNone};
+             };
+             return std::vector{twirl_link({200, 200}, s), inner};
+         }});
     for (const ChainCase& c : cases)
         for (const Filter filter : {Filter::antialias, Filter::bilinear}) {
             if (filter == Filter::bilinear && c.name != "pano of lens") continue;
@@ -650,9 +793,11 @@ TEST(Chain, SaysWhyItDoesNotJoin) {
     EXPECT_EQ(reason(rough.picture, lens.picture), "it has an ST-map that is rough or small");
     EXPECT_EQ(reason(lens.picture, stmap_link({60, 50}, plate, {}, settings).picture),
               "its source has an ST-map that is rough or small");
-    // A mesh of small cells is quicker drawn by itself.
+    // A mesh of small cells is quicker drawn by itself where they differ.
     const Link dense = mesh_link(3, 40, 0, plate, plate, settings);
-    EXPECT_EQ(reason(dense.picture, lens.picture), "it has a mesh of cells of less than 256 pixels");
+    EXPECT_EQ(reason(dense.picture, lens.picture), "it has a mesh of small cells that differ");
+    EXPECT_EQ(reason(points_link(7, 2000, plate, plate, settings).picture, lens.picture),
+              "it has pairs of points that stand close");
     const Link cube = pano_link(view(Projection::cubemap, {40, 240}, 90), flat(plate, 60), {}, settings);
     EXPECT_EQ(reason(cube.picture, lens.picture), "its source has faces");
     // What closes on itself is read across its seam, beyond which a flat source has nothing.

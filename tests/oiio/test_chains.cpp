@@ -125,14 +125,12 @@ TEST_F(Chains, LoseNothingOnTheWay) {
 }
 
 TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
-    write_text("dense.json", R"({"columns": 1, "rows": 1, "units": "fractions", "direction": "push",
-        "vertices": [[0, 0], [1, 0.02], [0.01, 1], [1, 1]]})");
-    write_text("pairs.csv", "x,y,u,v\n10,10,12,11\n200,20,190,22\n100,140,102,137\n");
-    std::string fine = R"({"columns": 50, "rows": 40, "units": "fractions", "vertices": [)";
+    // Cells of 19 pixels, each bent its own way.
+    std::string rough = R"({"columns": 50, "rows": 40, "units": "fractions", "vertices": [)";
     for (int i = 0; i < 51 * 41; ++i)
-        fine += (i > 0 ? ", [" : "[") + std::to_string(i % 51 / 50.0) + ", " + std::to_string(i / 51 / 40.0) +
-                "]";
-    write_text("fine.json", fine + "]}");
+        rough += (i > 0 ? ", [" : "[") + std::to_string((i % 51 + 0.3 * (i * 7 % 5 - 2)) / 50.0) + ", " +
+                 std::to_string((i / 51 + 0.3 * (i * 3 % 5 - 2)) / 40.0) + "]";
+    write_text("rough.json", rough + "]}");
     const struct {
         std::string outer, inner, reason;
     } cases[] = {
@@ -149,10 +147,10 @@ TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
          "its source is inverted point by point"},
         {"v.pano?from=equirectangular&yaw=180", "plate.exr.map?v=y+1&size=200x100",
          "its source closes on itself, but not what that is drawn from"},
-        {"v.pano?from=rectilinear", "plate.exr.warp?mesh=dense.json", "its source has a mesh that pushes"},
-        {"v.pano?from=rectilinear", "plate.exr.warp?points=pairs.csv", "its source has pairs of points"},
-        {"v.warp?mesh=fine.json", "plate.exr.lens?lens=3de4:k1=0.1",
-         "it has a mesh of cells of less than 256 pixels"},
+        {"v.warp?mesh=rough.json", "plate.exr.lens?lens=3de4:k1=0.1",
+         "it has a mesh of small cells that differ"},
+        {"v.pano?from=cylindrical", "plate.exr.mosaic?circles=2&to=cylindrical&size=200x50",
+         "its source is no picture of maps"},
         {"v.pano?from=rectilinear", "plate.exr.drape?", "its source is no picture of maps"},
         {"v.pano?from=cubemap", "plate.exr.pano?from=rectilinear&to=cubemap&size=40", "its source has faces"},
         {"v.pano?from=equirectangular&pixels=centers",
@@ -285,6 +283,76 @@ TEST_F(Chains, GoThroughStmaps) {
     // Half has steps of more than the tolerance.
     EXPECT_EQ(chain_of(view + "(large.exr.warp?mesh=rough.exr)"),
               "pano of a picture that is drawn first: its source has an ST-map that is rough or small");
+}
+
+// Warps without a formula of their own are read as cubics, which bounds know of: meshes that push, of small cells, pairs of points.
+TEST_F(Chains, GoThroughWarpsOfEveryKind) {
+    ASSERT_EQ(run("oiiotool --resize 480x320 plate.exr -o large.exr").status, 0);
+    write_text("push.json", R"({"columns": 1, "rows": 1, "units": "fractions", "direction": "push",
+        "vertices": [[0, 0], [1, 0.02], [0.01, 1], [1, 1]]})");
+    write_text("pairs.csv", "x,y,u,v\n20,20,24,22\n400,40,380,44\n200,280,204,274\n300,100,305,96\n");
+    std::string fine = R"({"columns": 60, "rows": 40, "units": "fractions", "vertices": [)";
+    for (int i = 0; i < 61 * 41; ++i) {
+        const double x = i % 61 / 60.0, y = i / 61 / 40.0;
+        fine += (i > 0 ? ", [" : "[") + std::to_string(x + 0.02 * std::sin(4 * y)) + ", " +
+                std::to_string(y + 0.01 * std::sin(5 * x)) + "]";
+    }
+    write_text("fine.json", fine + "]}");
+    const std::string view = "v.pano?from=rectilinear&srcfov=84&fov=60&yaw=4&size=300x220";
+    for (const std::string keys : {"mesh=push.json", "points=pairs.csv", "mesh=fine.json"}) {
+        SCOPED_TRACE(keys);
+        const std::string inner = view + "&src=(large.exr.warp?" + keys + ")",
+                          outer = "w.warp?" + keys + "&src=(large.exr.lens?lens=3de4:k1=0.03)";
+        EXPECT_EQ(chain_of(inner), "pano of warp");
+        EXPECT_EQ(chain_of(outer), "warp of lens");
+        for (const std::string& name : {inner, outer}) {
+            EXPECT_LE(open(name)->spec().get_float_attribute("anamorph:max_error"), 0.01f);
+            std::string shown = name;
+            const std::size_t at = shown.find("&src=");
+            const std::vector<float> error = read_floats(shown.insert(at, "&output=error"));
+            const std::vector<float> bound = read_floats(std::string(name).insert(at, "&output=bound"));
+            ASSERT_EQ(error.size(), bound.size());
+            for (std::size_t i = 0; i < error.size(); ++i) ASSERT_LE(error[i], bound[i]);
+            // As drawn twice, but for what that loses.
+            const std::vector<float> joined = read_floats(name),
+                                     drawn = read_floats(std::string(name).insert(at, "&concatenate=0"));
+            double sum = 0;
+            for (std::size_t i = 0; i < joined.size(); ++i) sum += std::fabs(double{joined[i]} - drawn[i]);
+            EXPECT_LT(sum / static_cast<double>(joined.size()), 0.01);
+        }
+        expect_one_picture(inner, 130, 90);
+    }
+}
+
+// A mosaic of one panorama is a map of it, at either end.
+TEST_F(Chains, GoThroughMosaicsOfOnePanorama) {
+    write_panorama("around.exr", 320, 160);
+    const std::string
+        keys = "from=equirectangular&x=0.3&z=0.2&depth=4",
+        inner = "v.pano?from=rectilinear&srcfov=80&fov=60&yaw=5&size=120x90&src=(around.exr.mosaic?" + keys +
+                "&fov=80&size=200x150)",
+        around = "v.pano?from=equirectangular&yaw=178&fov=80&size=120x90&src=(around.exr.mosaic?" + keys +
+                 "&to=equirectangular&size=300x150)",
+        outer = "w.mosaic?" + keys +
+                "&fov=80&size=120x90&src=(around.exr.pano?to=equirectangular&size=320x160&yaw=30)";
+    EXPECT_EQ(chain_of(inner), "pano of mosaic");
+    EXPECT_EQ(chain_of(around), "pano of mosaic");
+    EXPECT_EQ(chain_of(outer), "mosaic of pano");
+    for (const std::string& name : {inner, around, outer}) {
+        SCOPED_TRACE(name);
+        const std::size_t at = name.find("&src=");
+        const std::vector<float> joined = read_floats(name),
+                                 drawn = read_floats(std::string(name).insert(at, "&concatenate=0"));
+        double sum = 0;
+        for (std::size_t i = 0; i < joined.size(); ++i) sum += std::fabs(double{joined[i]} - drawn[i]);
+        EXPECT_LT(sum / static_cast<double>(joined.size()), 0.02);
+        const std::vector<float> error = read_floats(std::string(name).insert(at, "&output=error")),
+                                 bound = read_floats(std::string(name).insert(at, "&output=bound"));
+        for (std::size_t i = 0; i < error.size(); ++i) ASSERT_LE(error[i], bound[i]);
+    }
+    EXPECT_EQ(
+        chain_of("v.pano?from=cylindrical&src=(around.exr.mosaic?circles=2&to=cylindrical&size=200x50)"),
+        "pano of a picture that is drawn first: its source is no picture of maps");
 }
 
 TEST_F(Chains, KeepIntegersAndParts) {

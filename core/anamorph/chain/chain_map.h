@@ -12,6 +12,7 @@
 #include <cmath>
 #include <concepts>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -34,7 +35,7 @@ class ChainMap {
     static constexpr PlanCosts kCosts{.bound = 20,
                                       .further_bound = 4,
                                       .credit = 0.25,
-                                      .bound_pixels = 64,
+                                      .bound_pixels = 16,
                                       .polynomial = 3,
                                       .rounding = 6,
                                       .double_pixel = 0.02};
@@ -79,14 +80,51 @@ class ChainMap {
         const int middle = piece_at(static_cast<double>(at.x), static_cast<double>(at.y));
         return middle >= 0 && m_inner->exact(at.x, at.y, middle, p, source_piece);
     }
+    /// MapLink::jacobian(), by the chain rule.
+    Jacobian jacobian(double x, double y, int piece) const;
     /// `off`: how far the points of the box may be off themselves (MapLink::exact_error).
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece, double off = 0) const {
         return exact_error(x, y, piece, off, std::is_same_v<Real, long double>);
     }
-    /// MapLink::add_edges() of double and of Interval. A picture in the middle with gaps between its pieces adds none.
+    /// The way of a box of target points into the picture in the middle.
+    struct Way {
+        LinkPlace place;         ///< the outer map's
+        bool is_smooth = false;  ///< does all of the box lie on one branch of that?
+        /// A box that holds their points there, shifted into the picture; none where that is not known.
+        std::optional<Point<Interval>> points = {};
+    };
+    Way way_of(const Interval& x, const Interval& y, int piece) const;
+    /// Of a point nothing needs to be known.
+    Way way_of_values(const Point<Jet1<double>>&, int) const { return {}; }
+    Way way_of_values(const Point<Jet1<Interval>>& p, int piece) const {
+        return way_of(p.x.c[0], p.y.c[0], piece);
+    }
+
+    /// MapLink::add_edges() of double and of Interval, of points on a way. A picture in the middle with gaps between its pieces adds
+    /// none.
     template <class T>
-    bool add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const;
+    bool add_edges(const Point<Jet1<T>>& p, int piece, const Way& way, std::vector<Jet1<T>>& edges) const;
+    template <class T>
+    bool add_edges(const Point<Jet1<T>>& p, int piece, std::vector<Jet1<T>>& edges) const {
+        return add_edges(p, piece, way_of_values(p, piece), edges);
+    }
+
+    // Where maps end (MapLink). `beyond`: those that draw the pictures in the middle.
+    bool may_end() const { return true; }
+    bool may_end_in(const Interval& x, const Interval& y, int piece) const {
+        return m_outer->may_end_in(x, y, piece) || ends_beyond(way_of(x, y, piece));
+    }
+    bool ends_beyond(const Way& way) const;
+    bool is_clear(const Interval& x, const Interval& y, int piece) const {
+        return !m_outer->may_end_in(x, y, piece) && is_clear_beyond(way_of(x, y, piece));
+    }
+    bool is_clear_beyond(const Way& way) const;
+    bool add_ends(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const {
+        return m_outer->add_ends(p, piece, edges) && add_ends_beyond(p, piece, {}, edges);
+    }
+    bool add_ends_beyond(const Point<Jet1<double>>& p, int piece, const Way& way,
+                         std::vector<Jet1<double>>& edges) const;
 
   private:
     /// A point of the picture in the middle, from the outer map's.
@@ -104,14 +142,22 @@ class ChainMap {
         const Real y = m_middle.has_poles ? std::clamp<Real>(p.y, 0, m_inner->target_size().height) : p.y;
         return {p.x - std::floor(p.x / period) * period, y};
     }
+    /// The point of the picture in the middle, shifted into it, and how it moves with a target point on a way; none where it is not known.
+    template <class T>
+    std::optional<Point<Jet1<T>>> middle_of_jets(const Point<Jet1<T>>& p, int piece, const Way& way) const;
+    /// The piece of the picture in the middle that is nearest to a point.
+    int piece_near(double x, double y) const;
     /// The shift into the picture in the middle of the outer map's points near x.
     Point<double> shift_about(double x) const;
     /// The piece of the picture in the middle that holds a point; -1 where there is none.
     int piece_at(double x, double y) const { return m_pieces.holding(Interval(x), Interval(y)); }
     /// Is all of a box outside of the picture in the middle, which may close across?
     bool misses(const Point<Interval>& box) const;
-    /// Does a box reach beyond an edge of the picture in the middle?
+    /// Does a box reach beyond an edge of the picture in the middle by more than a hair?
     bool meets_edge(const Point<Interval>& box) const;
+    /// Do target points of a box, whose points in the middle lie in `points`?
+    bool crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points, int piece,
+                      const Local& local) const;
 
     double exact_error(const Interval& x, const Interval& y, int piece, double off,
                        bool in_long_double) const;
@@ -120,7 +166,6 @@ class ChainMap {
 
     std::shared_ptr<const MapLink> m_outer, m_inner;
     MiddlePicture m_middle;
-    bool m_inner_is_chain;
     PieceFinder m_pieces;  ///< of the picture in the middle
 };
 

@@ -11,22 +11,30 @@ template class FormulaPlan<ChainMap>;
 void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<PartialPixel>& pixels) const {
     using D = Jet1<double>;
     using I = Jet1<Interval>;
-    const auto edges_at = [&](double x, double y, std::vector<D>& to) {
-        return map().add_edges(Point<D>{D::variable(x, 1, 0), D::variable(y, 0, 1)}, piece, to);
+    const Interval x(block.x0, block.x1), y(block.y0, block.y1);
+    const ChainMap::Way way = map().way_of(x, y, piece);
+    if (map().is_clear_beyond(way)) return;
+    const auto at = [](double px, double py) {
+        return Point<D>{D::variable(px, 1, 0), D::variable(py, 0, 1)};
     };
+    // Where no map ends only pixels that an edge may cross need to be looked at.
+    const bool may_end = map().ends_beyond(way);
     std::vector<D> middle, edges;
     std::vector<I> over;
-    const Interval x(block.x0, block.x1), y(block.y0, block.y1);
     const bool are_known =
-        edges_at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi), middle) &&
-        map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, over) &&
+        !may_end && way.is_smooth &&
+        map().add_edges(at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi)), piece, way, middle) &&
+        map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, way, over) &&
         middle.size() == over.size();
     const EdgesOverBox near(block, middle, over);
     for (int j = part.y0; j < part.y1; ++j)
         for (int i = part.x0; i < part.x1; ++i) {
             if (are_known && !near.may_cross(i, j)) continue;
             edges.clear();
-            if (!edges_at(i + 0.5, j + 0.5, edges)) continue;
+            const Point<D> p = at(i + 0.5, j + 0.5);
+            const bool has_point = !may_end || map().add_ends_beyond(p, piece, way, edges);
+            // Beyond an end of a map nothing is known of what follows.
+            if (!map().add_edges(p, piece, way, edges) && (has_point || edges.empty())) continue;
             const PartialPixel pixel = part_within(i, j, edges);
             if (pixel.share > 0 && pixel.share < 1) pixels.push_back(pixel);
         }

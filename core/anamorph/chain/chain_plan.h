@@ -14,8 +14,12 @@ class ChainPlan final : public FormulaPlan<ChainMap>, public PartialPixels {
   public:
     using FormulaPlan<ChainMap>::FormulaPlan;
 
-    /// By the maps' derivatives in the middle of a pixel: edges are straight lines in it. Where the outer map is not smooth in a
-    /// pixel, that is not partial.
+    Jacobian jacobian(double x, double y, int piece) const noexcept override {
+        return map().jacobian(x, y, piece);
+    }
+
+    /// By the maps' derivatives in the middle of a pixel: edges are straight lines in it, and so is where a map of a picture in the middle
+    /// ends (a lens, the rim of a fisheye's circle, what lies behind a camera).
     void find(const Box& block, int piece, const Box& part, std::vector<PartialPixel>& pixels) const override;
 };
 

@@ -17,7 +17,11 @@ constexpr double kMarkov = 100;
 
 CellMap::CellMap(std::shared_ptr<const Mesh> mesh) : m_mesh(std::move(mesh)) {
     const Box whole{0, 0, m_mesh->from().width, m_mesh->from().height};
-    each_cell_of(*m_mesh, whole, [&](const MeshCell&, const Box& part) { m_pieces.push_back(part); });
+    each_cell_of(*m_mesh, whole, [&](const MeshCell& cell, const Box& part) {
+        m_pieces.push_back(part);
+        m_cells.push_back(cell);
+    });
+    m_kept = std::make_shared<std::vector<Kept>>(m_cells.size());
 }
 
 bool CellMap::serves(const Mesh& mesh) {
@@ -28,13 +32,19 @@ bool CellMap::serves(const Mesh& mesh) {
     return cells * kLeastPixels <= pixels || (pixels <= kSmallPicture && cells <= kMostInSmall);
 }
 
-CellMap::Local CellMap::local_around(double x, double y, int) const {
-    const MeshCell cell = m_mesh->cell_at(x, y);
+CellMap::Form CellMap::form_of(const MeshCell& cell) const {
     const Patch patch = m_mesh->patch(cell);
-    const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
-    Bicubic powers = restricted(power_form(patch), {(x - cell.x0) / w, 1 / w}, {(y - cell.y0) / h, 1 / h});
-    add_identity(powers, *m_mesh, {x, 1}, {y, 1});
-    return {cell, {x, y}, powers, double_rounding(*m_mesh, cell, patch)};
+    return {cell, patch, power_form(patch), double_rounding(*m_mesh, cell, patch)};
+}
+
+CellMap::Local CellMap::local_around(double x, double y, int piece) const {
+    return with_form(x, y, piece, [&](const Form& form) -> Local {
+        const MeshCell& cell = form.cell;
+        const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
+        Bicubic powers = restricted(form.powers, {(x - cell.x0) / w, 1 / w}, {(y - cell.y0) / h, 1 / h});
+        add_identity(powers, *m_mesh, {x, 1}, {y, 1});
+        return {cell, {x, y}, powers, form.rounding};
+    });
 }
 
 Cover CellMap::cover(const Interval& x, const Interval& y, int, const Local& local, bool) const {

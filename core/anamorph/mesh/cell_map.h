@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "anamorph/mesh/hermite.h"
@@ -57,11 +58,17 @@ class CellMap {
                                       const Local& local) const;
 
     template <std::floating_point Real>
-    bool exact(const Real& x, const Real& y, int, Point<Real>& p, int& source_piece) const {
+    bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {
         source_piece = 0;
-        const Point<double> at = m_mesh->at(static_cast<double>(x), static_cast<double>(y));
+        const Point<double> at = this->at(static_cast<double>(x), static_cast<double>(y), piece);
         p = {Real(at.x), Real(at.y)};
         return is_near(at);
+    }
+    /// MapLink::jacobian().
+    Jacobian jacobian(double x, double y, int piece) const {
+        using J = Jet1<double>;
+        const Point<J> p = at(J::variable(x, 1, 0), J::variable(y, 0, 1), piece);
+        return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
     }
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int) const {
@@ -84,8 +91,42 @@ class CellMap {
     static bool is_near(const Point<double>& p);
     double exact_error(const Interval& x, const Interval& y) const;
 
+    /// What is made of a cell.
+    struct Form {
+        MeshCell cell;
+        Patch patch;
+        Bicubic powers;   ///< of its parameters
+        double rounding;  ///< double_rounding()
+    };
+    Form form_of(const MeshCell& cell) const;
+    /// Those of pieces, each made when it is first asked for.
+    struct Kept {
+        std::once_flag once;
+        Form form;
+    };
+    static double value_of(double a) { return a; }
+    static double value_of(const Jet1<double>& a) { return a.c[0]; }
+    /// Calls body(form) of the cell that a point is evaluated in, which may be that of `piece`.
+    template <class Body>
+    auto with_form(double x, double y, int piece, const Body& body) const {
+        const MeshCell cell = m_mesh->cell_at(x, y), &own = m_cells[static_cast<std::size_t>(piece)];
+        if (cell.level != own.level || cell.column != own.column || cell.row != own.row)
+            return body(form_of(cell));
+        Kept& kept = (*m_kept)[static_cast<std::size_t>(piece)];
+        std::call_once(kept.once, [&] { kept.form = form_of(cell); });
+        return body(static_cast<const Form&>(kept.form));
+    }
+    /// Mesh::at(), the same bits.
+    template <class T>
+    Point<T> at(const T& x, const T& y, int piece) const {
+        return with_form(value_of(x), value_of(y), piece,
+                         [&](const Form& form) { return m_mesh->at(form.patch, x, y); });
+    }
+
     std::shared_ptr<const Mesh> m_mesh;
     std::vector<Box> m_pieces;
+    std::vector<MeshCell> m_cells;              ///< of the pieces
+    std::shared_ptr<std::vector<Kept>> m_kept;  ///< of the pieces
 };
 
 }  // namespace anamorph

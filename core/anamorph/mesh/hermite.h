@@ -176,6 +176,13 @@ struct EconomizedBicubic {
     }
 };
 
+/// The sum of the magnitudes of a bicubic's coefficients in products of Chebyshev polynomials: a bound of it on [-1, 1]^2.
+inline double chebyshev_size(const double (&p)[4][4]) {
+    const EconomizedBicubic e(p);
+    return std::fabs(e.c[0] + 0.5 * (e.c[3] + e.c[5])) + std::fabs(e.c[1]) + std::fabs(e.c[2]) +
+           0.5 * (std::fabs(e.c[3]) + std::fabs(e.c[5])) + std::fabs(e.c[4]) + e.dropped;
+}
+
 /// The sum of the magnitudes of the coefficients of a coordinate: a bound of the coordinate on [-1, 1]^2.
 inline double sum_of_magnitudes(const double (&c)[4][4]) {
     double sum = 0;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "anamorph/mesh/hermite.h"
+#include "anamorph/mesh/window_map.h"
 #include "anamorph/plan/block_writer.h"
 
 namespace anamorph {
@@ -232,6 +233,49 @@ class InverseSubdivider {
         BlockWriter::for_blocks(box, [&](const Box& b) { place(b); });
     }
 
+    /// The inverse on a box whose points have one source point each, between the centres of its outermost pixels; else the error is
+    /// infinite.
+    LocalInverse over(const Box& box) {
+        aim(box);
+        return gather() ? LocalInverse() : invert();
+    }
+    /// A box that holds all source points of those of a box.
+    std::optional<Point<Interval>> points_over(const Interval& x, const Interval& y) {
+        if (roots_over(x, y) != Roots::one) return {};
+        Point<Interval> all{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+        const auto add = [](Interval& to, double line, double cell, double middle, double size,
+                            const Part& z) {
+            const double at = line + (middle + size * z.middle) * cell, reach = size * z.half * cell;
+            to = {std::min(to.lo, at - reach), std::max(to.hi, at + reach)};
+        };
+        for (const Near& near : m_near) {
+            const Sheet& sheet = *near.sheet;
+            const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(sheet.cell)];
+            add(all.x, cell.x0, cell.x1 - cell.x0, sheet.s, sheet.hs, near.s);
+            add(all.y, cell.y0, cell.y1 - cell.y0, sheet.t, sheet.ht, near.t);
+        }
+        // What computed ones are off, and what rounds here.
+        double error = 0;
+        for (const Near& near : m_near) error = std::max(error, 2 * near.sheet->error);
+        const Interval off(-error, error);
+        return Point<Interval>{all.x + off, all.y + off};
+    }
+
+    /// Has every point of a box certainly one source point, or certainly none?
+    enum class Roots { none, one, unknown };
+    Roots roots_over(const Interval& x, const Interval& y) {
+        // A point is taken to be a little box, which is to hold more than rounding.
+        constexpr double kLeast = 0x1p-20;
+        m_x = 0.5 * (x.lo + x.hi);
+        m_y = 0.5 * (y.lo + y.hi);
+        m_hx = std::max(0.5 * (x.hi - x.lo), kLeast);
+        m_hy = std::max(0.5 * (y.hi - y.lo), kLeast);
+        m_narrowings = 16;
+        const bool on_fold = gather();
+        if (m_near.empty() && !on_fold) return Roots::none;
+        return !on_fold && invert().error < HUGE_VAL ? Roots::one : Roots::unknown;
+    }
+
   private:
     void aim(const Box& box) {
         m_x = 0.5 * (box.x0 + box.x1);
@@ -317,7 +361,7 @@ class InverseSubdivider {
 
     std::optional<Near> narrowed(const Sheet& sheet) const {
         const auto on_sheet = [&](const Point<double>& z) { return m_plan.on_sheet(sheet, z); };
-        const auto near = sheet.narrowed(m_x, m_y, m_hx, m_hy, on_sheet);
+        const auto near = sheet.narrowed(m_x, m_y, m_hx, m_hy, on_sheet, m_narrowings);
         return near ? std::optional(Near{&sheet, near->first, near->second}) : std::nullopt;
     }
 
@@ -628,9 +672,90 @@ class InverseSubdivider {
     std::shared_ptr<Bicubics> m_bicubics;  ///< of m_blocks, if there are any
     BlockWriter m_writer;
     double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
+    int m_narrowings = 3;                         ///< steps that sheets are narrowed by, each to a quarter
     std::vector<Near> m_near;
     mutable std::array<KnownCell, 16> m_known;
     mutable std::size_t m_next_known = 0;
+};
+
+/// A mesh that pushes in windows (window_map.h): its inverse by blocks, in larger ones.
+class InverseWindows final : public WindowSource {
+  public:
+    explicit InverseWindows(std::shared_ptr<const InversePlan> plan) : m_plan(std::move(plan)) {}
+
+    Size target_size() const override { return m_plan->mesh().to(); }
+    Size source_size() const override { return m_plan->mesh().from(); }
+    bool exact(double x, double y, Point<double>& p) const override {
+        int piece = 0;
+        return m_plan->exact(x, y, 0, p, piece);
+    }
+    Jacobian jacobian(double x, double y) const override { return m_plan->jacobian(x, y, 0); }
+    bool misses(const Interval& x, const Interval& y) const override {
+        bool any = false;
+        m_plan->tree().each({x.lo, y.lo, x.hi, y.hi}, [&](std::int32_t) { any = true; });
+        return !any;
+    }
+
+    WindowCubic cubic_over(const Box& window, double most) const override {
+        WindowCubic cubic = cubic_about(window);
+        Blocks none;
+        const LocalInverse inverse = InverseSubdivider(*m_plan, most, none).over(window);
+        // In parameters between the centres of the outermost pixels, no product of powers is more than 1.
+        const auto dropped = [](const double(&c)[4][4]) {
+            return std::fabs(c[3][1]) + std::fabs(c[2][2]) + std::fabs(c[1][3]);
+        };
+        cubic.unit = 1 / half(window.width());
+        for (int k = 0; k < 10; ++k) {
+            cubic.cx[k] = inverse.x[WindowCubic::kAcross[k]][WindowCubic::kDown[k]];
+            cubic.cy[k] = inverse.y[WindowCubic::kAcross[k]][WindowCubic::kDown[k]];
+        }
+        const double error = (inverse.error + std::hypot(dropped(inverse.x), dropped(inverse.y)) +
+                              1.4143 * 0x1p-47 * cubic.size()) *
+                             rounded_detail::kUp;
+        if (!(error <= most)) return cubic;
+        cubic.error = error;
+        cubic.x = {window.x0 + 0.5, window.x1 - 0.5};
+        cubic.y = {window.y0 + 0.5, window.y1 - 0.5};
+        return cubic;
+    }
+
+    /// Where every point of the box has one source point: what exact() errs by, and by how much the inverse moves what is off. On a sheet
+    /// z + N(z) = w, so that z changes by |Y| / (1 - kContraction) of it at most; from sheet to sheet the inverse goes on.
+    double exact_error(const Interval& x, const Interval& y, double off) const override {
+        const bool is_point = x.lo == x.hi && y.lo == y.hi && off == 0;
+        double error = 0, slope = 0;
+        bool on_fold = false, any = false;
+        m_plan->tree().each({x.lo, y.lo, x.hi, y.hi}, [&](std::int32_t i) {
+            const Sheet& sheet = m_plan->sheets()[static_cast<std::size_t>(i)];
+            any = true;
+            on_fold |= sheet.fold;
+            if (sheet.fold) return;
+            error = std::max(error, sheet.error);
+            const MeshCell& cell = m_plan->cells()[static_cast<std::size_t>(sheet.cell)];
+            slope =
+                std::max(slope, std::hypot(sheet.hs * (cell.x1 - cell.x0), sheet.ht * (cell.y1 - cell.y0)) *
+                                    sheet.to_parameters.norm() / (1 - Sheet::kContraction));
+        });
+        if (!any) return 0;
+        if (is_point) return on_fold ? m_plan->preimages(x.lo, y.lo).error : error;
+        Blocks none;
+        switch (InverseSubdivider(*m_plan, HUGE_VAL, none).roots_over(x, y)) {
+            case InverseSubdivider::Roots::none:
+                return 0;
+            case InverseSubdivider::Roots::one:
+                return (error + slope * off) * rounded_detail::kUp;
+            default:
+                return HUGE_VAL;
+        }
+    }
+
+    std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const override {
+        Blocks none;
+        return InverseSubdivider(*m_plan, HUGE_VAL, none).points_over(x, y);
+    }
+
+  private:
+    std::shared_ptr<const InversePlan> m_plan;
 };
 
 }  // namespace
@@ -662,6 +787,17 @@ void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
 
 BlockPolynomial InversePlan::bicubic(const Block& block) const noexcept {
     return static_cast<const Bicubics&>(*block.data).polynomials[static_cast<std::size_t>(block.record)];
+}
+
+std::shared_ptr<const MapLink> InversePlan::link() const {
+    const auto plan = std::static_pointer_cast<const InversePlan>(weak_from_this().lock());
+    return plan && joins(m_scheme)
+               ? window_link(std::make_shared<const InverseWindows>(plan), m_scheme, m_tol)
+               : nullptr;
+}
+
+std::string InversePlan::why_unlinked() const {
+    return joins(m_scheme) ? "has a mesh that pushes and bends too much" : BlockMap::why_unlinked();
 }
 
 Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept {

@@ -34,7 +34,9 @@ class InversePlan final : public WarpPlan {
     /// The number of source points of a target point less one; at least 1 where they cannot be told apart.
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
-    std::string why_unlinked() const override { return "has a mesh that pushes"; }
+    /// Null where the mesh is rough, where another scheme than automatic or exact is asked for, and where no shared_ptr holds it.
+    std::shared_ptr<const MapLink> link() const override;
+    std::string why_unlinked() const override;
 
     static constexpr double kFoldSize = 1.0 / 4;
     /// The largest number of visits for a pixel near a fold.

@@ -11,6 +11,8 @@
 #include "anamorph/mesh/hermite.h"
 #include "anamorph/mesh/mesh_lattice.h"
 #include "anamorph/mesh/mesh_residual.h"
+#include "anamorph/mesh/mesh_windows.h"
+#include "anamorph/mesh/window_map.h"
 #include "anamorph/plan/block_writer.h"
 #include "anamorph/plan/map_link.h"
 
@@ -206,19 +208,35 @@ Jacobian MeshPlan::jacobian(double x, double y, int) const noexcept {
     return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
 }
 
-std::shared_ptr<const MapLink> MeshPlan::link() const {
-    if (!joins(m_scheme) || m_lattice || !CellMap::serves(m_mesh)) return nullptr;
+PlanOptions link_options(WarpScheme scheme, double tol) {
     PlanOptions options;
-    options.scheme = m_scheme == WarpScheme::exact ? Scheme::exact : Scheme::automatic;
-    options.tol = m_tol;
+    options.scheme = scheme == WarpScheme::exact ? Scheme::exact : Scheme::automatic;
+    options.tol = tol;
     options.cull = false;
-    return std::make_shared<const LinkOf<CellMap>>(CellMap(std::make_shared<const Mesh>(m_mesh)), options);
+    return options;
+}
+
+std::shared_ptr<const MapLink> window_link(std::shared_ptr<const WindowSource> source, WarpScheme scheme,
+                                           double tol) {
+    const WindowMap map(std::move(source), tol);
+    if (scheme != WarpScheme::exact && tol > 0 && !map.is_smooth()) return nullptr;
+    return std::make_shared<const LinkOf<WindowMap>>(map, link_options(scheme, tol));
+}
+
+std::shared_ptr<const MapLink> MeshPlan::link() const {
+    if (!joins(m_scheme)) return nullptr;
+    const auto mesh = std::make_shared<const Mesh>(m_mesh);
+    // Cells that are one to a block are formulas, unless larger parts of the map are smooth.
+    constexpr int kLarge = 64;
+    const bool has_large_cells = !m_lattice && CellMap::serves(m_mesh);
+    if (has_large_cells &&
+        !(m_tol > 0 && WindowMap(std::make_shared<const MeshWindows>(mesh), m_tol).is_smooth(kLarge)))
+        return std::make_shared<const LinkOf<CellMap>>(CellMap(mesh), link_options(m_scheme, m_tol));
+    return window_link(std::make_shared<const MeshWindows>(mesh), m_scheme, m_tol);
 }
 
 std::string MeshPlan::why_unlinked() const {
-    return joins(m_scheme)
-               ? "has a mesh of cells of less than " + std::to_string(CellMap::kLeastPixels) + " pixels"
-               : BlockMap::why_unlinked();
+    return joins(m_scheme) ? "has a mesh of small cells that differ" : BlockMap::why_unlinked();
 }
 
 float MeshPlan::folds(double x, double y) const noexcept {

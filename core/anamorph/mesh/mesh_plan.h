@@ -20,12 +20,13 @@
 
 #include "anamorph/mesh/mesh.h"
 #include "anamorph/plan/block.h"
+#include "anamorph/plan/formula_plan.h"
 #include "anamorph/plan/scheme.h"
 
 namespace anamorph {
 
 /// The source points of a warp, in blocks, and where it folds.
-class WarpPlan : public BlockMap {
+class WarpPlan : public BlockMap, public std::enable_shared_from_this<WarpPlan> {
   public:
     using BlockMap::BlockMap;
 
@@ -39,6 +40,15 @@ class WarpPlan : public BlockMap {
 constexpr bool joins(WarpScheme scheme) {
     return scheme == WarpScheme::automatic || scheme == WarpScheme::exact;
 }
+
+/// How a warp is planned as a link of a chain.
+PlanOptions link_options(WarpScheme scheme, double tol);
+
+class WindowSource;
+
+/// A warp as a link of a chain, by windows of it; null where these are too small to be worth it, unless all pixels are exact.
+std::shared_ptr<const MapLink> window_link(std::shared_ptr<const WindowSource> source, WarpScheme scheme,
+                                           double tol);
 
 class ResidualTables;
 
@@ -59,7 +69,7 @@ class MeshPlan final : public WarpPlan {
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
-    /// Null where its cells are small, or another scheme than automatic or exact is asked for.
+    /// Null where its cells are small and differ, or another scheme than automatic or exact is asked for.
     std::shared_ptr<const MapLink> link() const override;
     std::string why_unlinked() const override;
 

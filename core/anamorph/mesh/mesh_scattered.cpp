@@ -6,24 +6,28 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "anamorph/mesh/cubic_rows.h"
 #include "anamorph/mesh/folds.h"
 #include "anamorph/mesh/hermite.h"
+#include "anamorph/mesh/window_cubic.h"
 #include "anamorph/plan/block_writer.h"
+#include "anamorph/plan/map_link.h"
 
 namespace anamorph {
 namespace {
 
-/// The pixel centres of a block.
+/// The pixel centres of a block, or another part of the target.
 struct Centres {
     Part across, down;
 
     explicit Centres(const Box& box)
         : across{0.5 * (box.x0 + box.x1), half(box.width())},
           down{0.5 * (box.y0 + box.y1), half(box.height())} {}
+    Centres(const Part& x, const Part& y) : across(x), down(y) {}
 };
 
 /// A cubic's map in powers of a block's parameters.
@@ -122,6 +126,42 @@ struct Run {
     }
 };
 
+Bounds bounds_of(const Centres& at) {
+    return {at.across.middle - at.across.half, at.down.middle - at.down.half,
+            at.across.middle + at.across.half, at.down.middle + at.down.half};
+}
+/// The rounding of the identity's part: the scale, a product and a sum.
+double identity_rounding(const Scattered& map, const Bounds& box) {
+    return 4 * 0x1p-53 *
+           std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * map.scale().x,
+                    std::max(std::fabs(box.y0), std::fabs(box.y1)) * map.scale().y);
+}
+
+/// How far Scattered::at is from the map of the given points, on a triangle's share of a box. There
+/// barycentric coordinates are at most 1; a weight takes 5 roundings, their sum with the Bezier points
+/// 11. Where coordinates err, the cubic moves by its derivatives; a point that they put into the
+/// neighbour's cubic moves by the square of that.
+double exact_rounding(const Scattered& map, const CubicTriangle& t, const Bounds& box) {
+    const CubicTriangle::Reach reach = t.reach(box);
+    const auto inside = [](double most) { return std::min(most, 1.0); };
+    const CubicTriangle::Terms terms = t.terms({inside(reach.u), inside(reach.v), inside(reach.w)});
+    const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
+                          24 * 0x1p-53 * terms.value + identity_rounding(map, box);
+    return 1.4143 * either;
+}
+
+/// How far a cubic, as a polynomial on all of a box, is from the map of the given points. The box may
+/// reach beyond its triangle. A Taylor coefficient of a weight takes less than 40 roundings, sums with
+/// the Bezier points 11; those of what is made of it (restrictions, differences, Chebyshev's form; rows
+/// by Horner's rule, in parameters off by two) less than 200.
+double form_rounding(const Scattered& map, const CubicTriangle& t, const Centres& at) {
+    const Bounds box = bounds_of(at);
+    const CubicTriangle::Terms terms = t.terms(t.reach(box));
+    const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
+                          256 * 0x1p-53 * terms.value + 64 * identity_rounding(map, box);
+    return 1.4143 * either;
+}
+
 /// Plans one region.
 class TriangleSubdivider {
   public:
@@ -134,7 +174,7 @@ class TriangleSubdivider {
             double bound = 0;
             m_map.tree().each(all, [&](std::int32_t i) {
                 const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(i)];
-                if (triangle.meets(all)) raise(bound, exact_rounding(triangle, all));
+                if (triangle.meets(all)) raise(bound, exact_rounding(m_map, triangle, all));
             });
             m_writer.exact(b, bound);
         });
@@ -178,7 +218,7 @@ class TriangleSubdivider {
         const auto take = [&](const CubicTriangle& triangle) {
             const Bounds b = triangle.bounds();
             m_met.push_back({&triangle, on(m_map, triangle, at), common(across, b.x0, b.x1),
-                             common(down, b.y0, b.y1), form_rounding(triangle, at)});
+                             common(down, b.y0, b.y1), form_rounding(m_map, triangle, at)});
         };
         const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
         take(middle);
@@ -244,42 +284,6 @@ class TriangleSubdivider {
         return d;
     }
 
-    static Bounds bounds_of(const Centres& at) {
-        return {at.across.middle - at.across.half, at.down.middle - at.down.half,
-                at.across.middle + at.across.half, at.down.middle + at.down.half};
-    }
-    /// The rounding of the identity's part: the scale, a product and a sum.
-    double identity_rounding(const Bounds& box) const {
-        return 4 * 0x1p-53 *
-               std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * m_map.scale().x,
-                        std::max(std::fabs(box.y0), std::fabs(box.y1)) * m_map.scale().y);
-    }
-
-    /// How far Scattered::at is from the map of the given points, on a triangle's share of a box. There
-    /// barycentric coordinates are at most 1; a weight takes 5 roundings, their sum with the Bezier points
-    /// 11. Where coordinates err, the cubic moves by its derivatives; a point that they put into the
-    /// neighbour's cubic moves by the square of that.
-    double exact_rounding(const CubicTriangle& t, const Bounds& box) const {
-        const CubicTriangle::Reach reach = t.reach(box);
-        const auto inside = [](double most) { return std::min(most, 1.0); };
-        const CubicTriangle::Terms terms = t.terms({inside(reach.u), inside(reach.v), inside(reach.w)});
-        const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
-                              24 * 0x1p-53 * terms.value + identity_rounding(box);
-        return 1.4143 * either;
-    }
-
-    /// How far a cubic, as a polynomial on all of a box, is from the map of the given points. The box may
-    /// reach beyond its triangle. A Taylor coefficient of a weight takes less than 40 roundings, sums with
-    /// the Bezier points 11; those of what is made of it (restrictions, differences, Chebyshev's form; rows
-    /// by Horner's rule, in parameters off by two) less than 200.
-    double form_rounding(const CubicTriangle& t, const Centres& at) const {
-        const Bounds box = bounds_of(at);
-        const CubicTriangle::Terms terms = t.terms(t.reach(box));
-        const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
-                              256 * 0x1p-53 * terms.value + 64 * identity_rounding(box);
-        return 1.4143 * either;
-    }
-
     /// The part of [-1, 1] that [low, high] takes of a row of pixels; a hair more.
     static Part common(const Part& all, double low, double high) {
         const double from = std::clamp((low - all.middle) / all.half, -1.0, 1.0),
@@ -294,6 +298,140 @@ class TriangleSubdivider {
     Pieces& m_records;
     BlockWriter m_writer;
     std::vector<Met> m_met;
+};
+
+/// The map as one for chains: on each triangle its cubic, for boxes in one triangle; elsewhere pixels are exact.
+class TriangleMap {
+  public:
+    static constexpr PlanCosts kCosts{.bound = 20, .further_bound = 4, .polynomial = 4, .rounding = 6};
+
+    explicit TriangleMap(std::shared_ptr<const ScatteredPlan> plan) : m_plan(std::move(plan)) {}
+
+    /// Are squares of 16 pixels about half of some places all over the picture each in one triangle?
+    bool has_large_triangles() const {
+        constexpr int kTried = 16;
+        const Size size = target_size();
+        int large = 0;
+        for (int j = 0; j < kTried; ++j)
+            for (int i = 0; i < kTried; ++i) {
+                const double x = (i + 0.5) * size.width / kTried, y = (j + 0.5) * size.height / kTried;
+                large += reach_in(map().triangle_at(x, y), x, y) >= 8;
+            }
+        return 2 * large >= kTried * kTried;
+    }
+
+    // The members that make this a FormulaMap (plan/formula_map.h).
+
+    using Local = WindowCubic;
+    Size target_size() const { return map().from(); }
+    Size source_size() const { return map().to(); }
+    std::vector<Box> target_pieces() const { return {{0, 0, map().from().width, map().from().height}}; }
+    SourceEdges source_edges() const { return {}; }
+    int source_piece(const Local&) const { return 0; }
+    int period() const { return 0; }
+    /// The cubic of the triangle that holds a point, for the largest square about it that lies in that.
+    Local local_around(double x, double y, int) const {
+        const CubicTriangle& triangle = map().triangle_at(x, y);
+        const double reach = reach_in(triangle, x, y);
+        const Centres at(Part{x, reach > 0 ? reach : 1}, Part{y, reach > 0 ? reach : 1});
+        const Bicubic f = on(map(), triangle, at);
+        WindowCubic cubic;
+        cubic.middle = {x, y};
+        cubic.unit = 1 / at.across.half;
+        for (int k = 0; k < 10; ++k) {
+            cubic.cx[k] = f.x[WindowCubic::kAcross[k]][WindowCubic::kDown[k]];
+            cubic.cy[k] = f.y[WindowCubic::kAcross[k]][WindowCubic::kDown[k]];
+        }
+        // What double rounds of the cubic where it is read: less than 64 units of its size.
+        cubic.error = (form_rounding(map(), triangle, at) + 0x1p-47 * cubic.size()) * rounded_detail::kUp;
+        if (!(reach > 0)) return cubic;
+        cubic.x = {x - reach, x + reach};
+        cubic.y = {y - reach, y + reach};
+        return cubic;
+    }
+    Cover cover(const Interval& x, const Interval& y, int, const Local& local, bool) const {
+        if (!local.holds(x, y)) return Cover::mixed;
+        const Point<Interval> p = local(x, y);
+        return magnitude(p.x) < kFarthest && magnitude(p.y) < kFarthest ? Cover::inside : Cover::mixed;
+    }
+    template <class T>
+    Point<T> operator()(const T& x, const T& y, const Local& local) const {
+        return local(x, y);
+    }
+    Jacobian jacobian(double x, double y, int piece) const { return m_plan->jacobian(x, y, piece); }
+    /// MapLink::points_of(): of all cubics that the box meets.
+    std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const {
+        const Bounds all{x.lo, y.lo, x.hi, y.hi};
+        std::optional<Point<Interval>> points;
+        const auto hull = [](const Interval& a, const Interval& b) {
+            return Interval(std::min(a.lo, b.lo), std::max(a.hi, b.hi));
+        };
+        map().tree().each(all, [&](std::int32_t i) {
+            const CubicTriangle& t = map().triangles()[static_cast<std::size_t>(i)];
+            if (!t.meets(all)) return;
+            const Point<Interval> here = map().at(t, x, y);
+            const double error = exact_rounding(map(), t, all);
+            const Interval off(-error, error);
+            const Point<Interval> with_error{here.x + off, here.y + off};
+            points = points ? Point<Interval>{hull(points->x, with_error.x), hull(points->y, with_error.y)}
+                            : with_error;
+        });
+        if (!points || !(magnitude(points->x) < kFarthest && magnitude(points->y) < kFarthest)) return {};
+        return points;
+    }
+    template <std::floating_point Real>
+    bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {
+        Point<double> at;
+        if (!m_plan->exact(static_cast<double>(x), static_cast<double>(y), piece, at, source_piece))
+            return false;
+        p = {Real(at.x), Real(at.y)};
+        return true;
+    }
+    /// The points are doubles whatever Real is.
+    template <class Real>
+    double exact_error(const Interval& x, const Interval& y, int, double off = 0) const {
+        return exact_error(x, y, off);
+    }
+
+  private:
+    const Scattered& map() const { return m_plan->map(); }
+
+    /// How far a square about a point may reach each way so that it lies certainly in a triangle; not above 0 where it may not.
+    static double reach_in(const CubicTriangle& t, double x, double y) {
+        constexpr double kMost = 4096;
+        const double dx = x - t.base.x, dy = y - t.base.y;
+        const double u = dx * t.a[0] + dy * t.b[0] + t.c[0], v = dx * t.a[1] + dy * t.b[1] + t.c[1];
+        const double margin = 1e-9 + 2 * t.place_error({x - kMost, y - kMost, x + kMost, y + kMost});
+        const auto reach = [&](double coordinate, double a, double b) {
+            return (coordinate - margin) / (std::fabs(a) + std::fabs(b));
+        };
+        return std::min({kMost, reach(u, t.a[0], t.b[0]), reach(v, t.a[1], t.b[1]),
+                         reach(1 - u - v, t.a[0] + t.a[1], t.b[0] + t.b[1])});
+    }
+
+    /// Where points are off by `off`, the map moves them by that times its slope at most: the cubics' by barycentric coordinates, times
+    /// what these change by.
+    double exact_error(const Interval& x, const Interval& y, double off) const {
+        const Bounds all{x.lo, y.lo, x.hi, y.hi};
+        double rounding = 0, slope = 0;
+        map().tree().each(all, [&](std::int32_t i) {
+            const CubicTriangle& t = map().triangles()[static_cast<std::size_t>(i)];
+            if (!t.meets(all)) return;
+            const double here = exact_rounding(map(), t, all);
+            if (!(here <= rounding)) rounding = here;
+            if (off == 0) return;
+            const CubicTriangle::Reach reach = t.reach(all);
+            const auto inside = [](double reached) { return std::min(reached, 1.0); };
+            const CubicTriangle::Terms terms = t.terms({inside(reach.u), inside(reach.v), inside(reach.w)});
+            const double turn = std::hypot(t.a[0], t.b[0]) + std::hypot(t.a[1], t.b[1]);
+            const double steep = 1.01 * 1.4143 * terms.slope * turn;
+            if (!(steep <= slope)) slope = steep;
+        });
+        const double identity = std::max(map().scale().x, map().scale().y);
+        return off == 0 ? rounding : (rounding + (slope + identity) * off) * rounded_detail::kUp;
+    }
+
+    std::shared_ptr<const ScatteredPlan> m_plan;
 };
 
 /// The triangles of a computed block: those that were kept, or found again.
@@ -405,6 +543,18 @@ void ScatteredPlan::computed(std::span<const Block> layers, const PointRows* to)
 void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                  float* y) const noexcept {
     write_row(m_map, block, Triangles(m_map, block).all(), row, begin, end, x, y);
+}
+
+std::shared_ptr<const MapLink> ScatteredPlan::link() const {
+    const auto plan = std::static_pointer_cast<const ScatteredPlan>(weak_from_this().lock());
+    if (!plan || !joins(m_scheme)) return nullptr;
+    const TriangleMap map(plan);
+    if (m_scheme != WarpScheme::exact && m_tol > 0 && !map.has_large_triangles()) return nullptr;
+    return std::make_shared<const LinkOf<TriangleMap>>(map, link_options(m_scheme, m_tol));
+}
+
+std::string ScatteredPlan::why_unlinked() const {
+    return joins(m_scheme) ? "has pairs of points that stand close" : BlockMap::why_unlinked();
 }
 
 Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {

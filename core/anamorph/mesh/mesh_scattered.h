@@ -25,7 +25,9 @@ class ScatteredPlan final : public WarpPlan {
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
-    std::string why_unlinked() const override { return "has pairs of points"; }
+    /// Null where triangles are small, where another scheme than automatic or exact is asked for, and where no shared_ptr holds it.
+    std::shared_ptr<const MapLink> link() const override;
+    std::string why_unlinked() const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

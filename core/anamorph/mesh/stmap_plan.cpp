@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anamorph/mesh/sample_map.h"
 #include "anamorph/mesh/sample_rows.h"
+#include "anamorph/mesh/st_windows.h"
 #include "anamorph/plan/block_writer.h"
 #include "anamorph/plan/map_link.h"
 
@@ -120,14 +120,8 @@ Jacobian StMapPlan::jacobian_by_neighbors(int column, int row) const {
 }
 
 std::shared_ptr<const MapLink> StMapPlan::link() const {
-    if (!joins(m_scheme)) return nullptr;
-    const SampleMap map(m_lattice, m_given_tol);
-    if (m_tol > 0 && !map.is_smooth()) return nullptr;
-    PlanOptions options;
-    options.scheme = m_scheme == WarpScheme::exact ? Scheme::exact : Scheme::automatic;
-    options.tol = m_given_tol;
-    options.cull = false;
-    return std::make_shared<const LinkOf<SampleMap>>(map, options);
+    return joins(m_scheme) ? window_link(std::make_shared<const StWindows>(m_lattice), m_scheme, m_given_tol)
+                           : nullptr;
 }
 
 std::string StMapPlan::why_unlinked() const {

@@ -68,6 +68,7 @@ ParameterTable make_mosaic_table() {
         subimage(),
         tile(),
         mip(),
+        concatenate(),
         filter(),
         clamp(),
         data_channels(),
@@ -159,6 +160,8 @@ class SolvedMosaic final : public SolvedPicture {
     Attributes reached(const ParallelFor& parallel_for) const override {
         return m_picture->reached(parallel_for);
     }
+    /// One panorama alone is all of the source.
+    const Picture* of_maps() const override { return m_circles == 1 ? m_picture->of_maps() : nullptr; }
     std::unique_ptr<const SolvedPicture> of_moved() const override {
         std::unique_ptr<const SolvedPicture> moved = m_picture->of_moved();
         return moved ? std::make_unique<SolvedMosaic>(std::move(moved), m_circles, m_height) : nullptr;

@@ -72,6 +72,7 @@ class ConcentricMap {
     std::vector<Box> target_pieces() const { return m_view.target_pieces(); }
     int source_piece(const Local& local) const { return m_view.source_piece(local.view); }
     int period() const { return m_view.period(); }
+    int target_period() const { return m_view.target_period(); }
     SourceEdges source_edges() const { return m_view.source_edges(); }
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
 

@@ -207,6 +207,19 @@ Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_
     return Cover::inside;
 }
 
+double Panorama::end(double x, double y, int piece) const {
+    const double inside = m_target.inside(x, y, piece);
+    if (!(inside > 0) || m_source.pieces().size() > 1) return inside;
+    return std::min(inside, m_source.sees(source_ray(x, y, piece)));
+}
+
+Interval Panorama::end(const Interval& x, const Interval& y, int piece) const {
+    const Interval inside = m_target.inside(x, y, piece);
+    if (!(inside.lo > 0) || m_source.pieces().size() > 1) return inside;
+    const Interval sees = m_source.sees(source_ray(x, y, piece));
+    return {std::min(inside.lo, sees.lo), std::min(inside.hi, sees.hi)};
+}
+
 template <class Real>
 double Panorama::exact_error(const Interval& x, const Interval& y, int piece, double off) const {
     using R = Rounded<Real>;

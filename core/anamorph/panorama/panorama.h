@@ -102,6 +102,11 @@ class Panorama {
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
 
+    /// A number that is positive where there is a source point, and changes sign where those end: at the rim of either picture. Pieces of
+    /// sources that have several end by none.
+    double end(double x, double y, int piece) const;
+    Interval end(const Interval& x, const Interval& y, int piece) const;
+
     /// Bounds the rounding of exact<Real>, its result kept in double, over a box of target points: the
     /// distance from the truth in source pixels. Around a source with azimuths, points a full turn apart
     /// count as one; on a cube, so do those of one ray on two faces. 0 where no point has a source point;

@@ -124,6 +124,12 @@ class PlaneMap {
         return T(1);
     }
 
+    /// A number that is positive where there is a source point, and changes sign where those end (MapLink::add_ends).
+    template <class T>
+    T end(const T& x, const T& y, int) const {
+        return formula().inside(x, y);
+    }
+
     template <class T>
     Point<T> operator()(const T& x, const T& y, const Local&) const {
         return formula().source_point(x, y);

@@ -85,6 +85,9 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
     virtual double exact_error(const Interval& x, const Interval& y, int piece, double off,
                                bool in_long_double) const = 0;
 
+    /// The derivative at a target point; no number where there is no source point.
+    virtual Jacobian jacobian(double x, double y, int piece) const = 0;
+
     /// A box that holds all source points of a box of the target, the true ones and those that exact() finds, though they lie on
     /// no one branch; none where that is not known, or where some have none.
     virtual std::optional<Point<Interval>> points_of(const Interval& x, const Interval& y) const = 0;
@@ -95,7 +98,31 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
                            std::vector<Jet1<double>>& edges) const = 0;
     virtual bool add_edges(const Point<Jet1<Interval>>& p, int piece,
                            std::vector<Jet1<Interval>>& edges) const = 0;
+
+    /// Does the map end inside of its target, or do pictures that it leads through have edges?
+    virtual bool may_end() const = 0;
+    /// May it end in a box?
+    virtual bool may_end_in(const Interval& x, const Interval& y, int piece) const = 0;
+    /// Does it certainly end nowhere in a box, and lies that within all those edges?
+    virtual bool is_clear(const Interval& x, const Interval& y, int piece) const = 0;
+    /// Appends numbers that are positive on one side of where the map ends, near a target point, and negative on the other, where there
+    /// is no source point; in no unit. False where the point itself has none.
+    virtual bool add_ends(const Point<Jet1<double>>& p, int piece,
+                          std::vector<Jet1<double>>& edges) const = 0;
 };
+
+/// A function of target points as add_ends() gives them: its value, and its derivatives by differences over half a pixel.
+template <class Function>
+Jet1<double> end_of(const Function& function, const Point<Jet1<double>>& p) {
+    constexpr double kStep = 0.25;
+    const double x = p.x.c[0], y = p.y.c[0];
+    const double by_x = (function(x + kStep, y) - function(x - kStep, y)) / (2 * kStep),
+                 by_y = (function(x, y + kStep) - function(x, y - kStep)) / (2 * kStep);
+    Jet1<double> end;
+    end.c[0] = function(x, y);
+    for (int k = 1; k < 3; ++k) end.c[k] = by_x * p.x.c[k] + by_y * p.y.c[k];
+    return end;
+}
 
 /// The link of a map.
 template <FormulaMap Map>
@@ -143,6 +170,16 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
                        bool in_long_double) const override {
         return in_long_double ? error_in<long double>(x, y, piece, off) : error_in<double>(x, y, piece, off);
     }
+    Jacobian jacobian(double x, double y, int piece) const override {
+        if constexpr (requires { m_map.jacobian(x, y, piece); }) {
+            return m_map.jacobian(x, y, piece);
+        } else {
+            using J = Jet1<double>;
+            const Point<J> p =
+                m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
+            return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+        }
+    }
     template <class T>
     Point<T> formula(const Point<T>& p, const LinkPlace& place) const {
         return m_map(p.x, p.y, local(place));
@@ -159,6 +196,41 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
     bool add_edges(const Point<Jet1<Interval>>& p, int piece,
                    std::vector<Jet1<Interval>>& edges) const override {
         return add_edges_of_map(p, piece, edges);
+    }
+
+    bool may_end() const override {
+        if constexpr (requires { m_map.may_end(); })
+            return m_map.may_end();
+        else
+            return requires {
+                m_map.end(0.0, 0.0, 0);
+            };
+    }
+    bool may_end_in(const Interval& x, const Interval& y, int piece) const override {
+        if constexpr (requires { m_map.may_end_in(x, y, piece); })
+            return m_map.may_end_in(x, y, piece);
+        else if constexpr (requires { m_map.end(x, y, piece); })
+            return !(m_map.end(x, y, piece).lo > 0);
+        else
+            return false;
+    }
+    bool is_clear(const Interval& x, const Interval& y, int piece) const override {
+        if constexpr (requires { m_map.is_clear(x, y, piece); })
+            return m_map.is_clear(x, y, piece);
+        else
+            return !may_end_in(x, y, piece);
+    }
+    bool add_ends(const Point<Jet1<double>>& p, int piece, std::vector<Jet1<double>>& edges) const override {
+        if constexpr (requires { m_map.add_ends(p, piece, edges); }) {
+            return m_map.add_ends(p, piece, edges);
+        } else if constexpr (requires { m_map.end(0.0, 0.0, piece); }) {
+            const Jet1<double> end = end_of([&](double x, double y) { return m_map.end(x, y, piece); }, p);
+            // Where it is not known which way the end lies it is left to the pixel's middle.
+            if (std::isfinite(end.c[0] + end.c[1] + end.c[2])) edges.push_back(end);
+            return end.c[0] > 0;
+        } else {
+            return true;
+        }
     }
 
   private:

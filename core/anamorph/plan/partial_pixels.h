@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that a picture fills in part: what a chain of maps leads through may end inside of them.
+// Pixels that a picture fills in part: what a chain of maps leads through may end inside of them. How much of a pixel is filled is told by
+// the derivatives in its middle, as if edges were straight in it: it is no area that is proven.
 #pragma once
 
 #include <vector>
