@@ -296,12 +296,13 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std
 }
 
 void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not) {
-    const ImageSpec base = spec_of(0);
+    ImageSpec base = spec_of(0);
     if (base.format == OIIO::TypeUnknown) {
         const std::string why = reason_of(why_not(), m_name.string(), m_shown);
         throw Error("source \"" + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why));
     }
     check_source(base, m_shown);
+    if (m_subimage == 0 && m_first_level == 0) add_photo_sphere(base, m_name.string());
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);

@@ -4,13 +4,16 @@
 #include <OpenImageIO/strutil.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "anamorph/image_source.h"
 #include "anamorph/operation/panorama_attributes.h"
+#include "anamorph/panorama/photo_sphere.h"
 
 namespace anamorph {
 namespace {
@@ -137,6 +140,17 @@ double number_of(const ImageSpec& spec, const std::string& name) {
     return value != 0 ? value : static_cast<double>(spec.get_int_attribute(name));
 }
 
+/// What is read of Google's Photo Sphere metadata besides GPano:ProjectionType, which is no number.
+constexpr std::array kPhotoSphereNumbers = {"FullPanoWidthPixels",
+                                            "FullPanoHeightPixels",
+                                            "CroppedAreaLeftPixels",
+                                            "CroppedAreaTopPixels",
+                                            "CroppedAreaImageWidthPixels",
+                                            "CroppedAreaImageHeightPixels",
+                                            "PoseHeadingDegrees",
+                                            "PosePitchDegrees",
+                                            "PoseRollDegrees"};
+
 /// The part of a panorama and its camera's pose, by Google's Photo Sphere metadata.
 void read_photo_sphere(const ImageSpec& spec, SourceFacts& facts) {
     const auto number = [&](const char* name) { return number_of(spec, std::string("GPano:") + name); };
@@ -237,6 +251,22 @@ int alpha_channel_of(const ImageSpec& spec) {
     if (alpha < 0 || alpha >= static_cast<int>(spec.channelnames.size())) return alpha;
     return is_matte(spec.channelnames[static_cast<std::size_t>(alpha)], cryptomatte_layers(spec)) ? -1
                                                                                                   : alpha;
+}
+
+void add_photo_sphere(ImageSpec& spec, const std::string& file) {
+    constexpr const char* kProjection = "ProjectionType";
+    const auto attribute = [](const char* name) { return std::string("GPano:") + name; };
+    const auto is_said = [&](const char* name) { return spec.find_attribute(attribute(name)) != nullptr; };
+    if (is_said(kProjection) || std::any_of(kPhotoSphereNumbers.begin(), kPhotoSphereNumbers.end(), is_said))
+        return;
+    std::ifstream stored(file, std::ios::binary);
+    const PhotoSphere values = photo_sphere_of(xmp_of_jpeg(stored));
+    if (const auto found = values.find(kProjection); found != values.end())
+        spec.attribute(attribute(kProjection), found->second);
+    for (const char* name : kPhotoSphereNumbers)
+        if (const auto found = values.find(name);
+            found != values.end() && Strutil::string_is_float(found->second))
+            spec.attribute(attribute(name), Strutil::stof(found->second));
 }
 
 SourceFacts facts_of(const ImageSpec& spec) {

@@ -18,6 +18,10 @@ SourceImage source_image(const OIIO::ImageSpec& spec);
 /// picture of ours names it, and the focal length as Exif has it.
 SourceFacts facts_of(const OIIO::ImageSpec& spec);
 
+/// Adds to the header of an image what the XMP of its file says of a panorama (GPano:...), which OpenImageIO 2.4 does not hand on
+/// of JPEG. Does nothing where the file is of another kind, or the header says such things already.
+void add_photo_sphere(OIIO::ImageSpec& spec, const std::string& file);
+
 /// The options of a call as assignments: names with `prefix` (taken off), all names without one. Numbers are
 /// written in the fewest digits that read back, so that 0.01f means 0.01.
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix = "");

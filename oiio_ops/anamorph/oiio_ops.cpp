@@ -246,7 +246,9 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
     for (const ImageBuf* src : sources) {
         if (!src) throw Error("a source image is null");
         check_readable(*src);
-        open.add(source_of(*src), src->spec());
+        ImageSpec spec = src->spec();
+        if (src->file_format_name() == "jpeg") add_photo_sphere(spec, std::string(src->name()));
+        open.add(source_of(*src), spec);
     }
     const Attributes lenses = find_lenses(operation, values, open.shown, open.known);
     std::vector<std::unique_ptr<Source>>& images = open.images;

@@ -223,10 +223,17 @@ class LensOracle {
             p.x += m_values[8] * r2 + m_values[9] * r4;
             p.y += m_values[10] * r2 + m_values[11] * r4;
         }
+        if (m_kind == LensModel::Kind::ocam)
+            p = {p.x + m_values[6] * p.y, m_values[5] * p.x + m_values[4] * p.y};
         return {p.x * m_unit + m_cx, p.y * m_unit + m_cy};
     }
     Point<Real> ideal(const View& v, const Point<Real>& observed) const {
-        const Real x = (observed.x - m_cx) / m_unit, y = (observed.y - m_cy) / m_unit;
+        Real x = (observed.x - m_cx) / m_unit, y = (observed.y - m_cy) / m_unit;
+        if (m_kind == LensModel::Kind::ocam) {
+            // OCamCalib's equations, solved by elimination.
+            y = (y - m_values[5] * x) / (m_values[4] - Real(m_values[5]) * m_values[6]);
+            x -= m_values[6] * y;
+        }
         const Real r = std::hypot(x, y), angle = std::atan2(y, x);
         if (is_of_observed() && r > m_end) return {NAN, NAN};
         const Real radius = is_of_observed() ? formula(r) : root(r);

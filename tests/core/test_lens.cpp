@@ -52,6 +52,7 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "poly:k0=-0.02,k1=0.02,k2=-0.03,k3=0.01,k4=0.002,d=7,e=-12",
                                "ocam:a0=-400,a2=5e-4,a3=-1e-7,a4=2e-10,d=4.5,e=-3",
                                "ocam:a0=500,a2=-2e-4,a4=-1e-10",
+                               "ocam:a0=-400,a2=5e-4,affine_c=0.9,affine_d=0.02,affine_e=-0.04,e=-3",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003",
                                "kb4:k1=-0.1,k2=0.02,k3=-0.003,k4=0.0002,e=3"};
 
@@ -354,6 +355,12 @@ TEST(Lens, RefusesToFoldWithinThePicture) {
     expect_refused("poly:k4=-1", "folds at a radius of");
     expect_refused("ocam:a2=1e-4", "folds at a radius of 0 pixels");
     expect_refused("ocam:a0=-400,a2=-0.005", "folds at a radius of");
+    for (const char* affine : {"affine_c=0", "affine_c=-1", "affine_c=11", "affine_d=1.5", "affine_e=-2",
+                               "affine_c=0.1,affine_d=0.5,affine_e=0.19"})
+        expect_refused(std::string("ocam:a0=-400,") + affine,
+                       "affine_c must be from 0.1 to 10, affine_d and affine_e from -1 to 1, and affine_c - "
+                       "affine_d affine_e at least 0.01");
+    expect_refused("ocam:a0=-400,affine_d=nan", "affine_d must be a number from");
 }
 
 TEST(Lens, IsRefusedWherePicturesHaveNone) {

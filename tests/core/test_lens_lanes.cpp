@@ -34,6 +34,7 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "poly:k0=-0.02,k1=0.02,k2=-0.03,k3=0.01,k4=0.002,d=7,e=-12",
                                "ocam:a0=-400,a2=5e-4,a3=-1e-7,a4=2e-10,d=4.5,e=-3",
                                "ocam:a0=500,a2=-2e-4,a4=-1e-10",
+                               "ocam:a0=-400,a2=5e-4,affine_c=0.9,affine_d=0.02,affine_e=-0.04,e=-3",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
 Chart chart_with(const char* text) {

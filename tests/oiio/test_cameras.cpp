@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "anamorph/oiio_ops.h"
 #include "host.h"
 
 namespace anamorph {
@@ -213,6 +214,70 @@ TEST_F(Cameras, PartsMayBeStoredTurned) {
     EXPECT_EQ(largest_difference(read_floats("turned.exr.pano?srcyaw=0" + view),
                                  read_floats("part.exr.pano?from=latlong&srccrop=320x160+60+40" + view)),
               0);
+}
+
+/// A JPEG file with XMP, as cameras write it.
+void write_jpeg(const ImageBuf& image, const std::string& name, const std::string& xmp) {
+    write_image(image, "plain.jpg");
+    std::ifstream plain("plain.jpg", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(plain), {}};
+    const std::string segment = std::string("http://ns.adobe.com/xap/1.0/") + '\0' + xmp;
+    const std::size_t length = segment.size() + 2;
+    std::ofstream(name, std::ios::binary)
+        << bytes.substr(0, 2) << "\xff\xe1" << static_cast<char>(length / 256)
+        << static_cast<char>(length % 256) << segment << bytes.substr(2);
+}
+
+// OpenImageIO 2.4 does not hand on what the XMP of a JPEG says of panoramas.
+TEST_F(Cameras, PartsAreKnownByTheXmpOfJpeg) {
+    const std::string begin =
+        "<x:xmpmeta xmlns:x='adobe:ns:meta/'><rdf:RDF "
+        "xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#'>"
+        "<rdf:Description xmlns:GPano='http://ns.google.com/photos/1.0/panorama/' ";
+    const std::string as_attributes =
+        begin +
+        "GPano:ProjectionType='equirectangular' GPano:FullPanoWidthPixels='320' "
+        "GPano:FullPanoHeightPixels='160' GPano:CroppedAreaLeftPixels='250' GPano:CroppedAreaTopPixels='30' "
+        "GPano:CroppedAreaImageWidthPixels='140' GPano:CroppedAreaImageHeightPixels='90' "
+        "GPano:PoseHeadingDegrees='12.5'/></rdf:RDF></x:xmpmeta>";
+    std::string as_elements = begin + ">";
+    for (const auto& [key, value] : {std::pair{"ProjectionType", "equirectangular"},
+                                     {"FullPanoWidthPixels", "320"},
+                                     {"FullPanoHeightPixels", "160"},
+                                     {"CroppedAreaLeftPixels", "250"},
+                                     {"CroppedAreaTopPixels", "30"},
+                                     {"CroppedAreaImageWidthPixels", "140"},
+                                     {"CroppedAreaImageHeightPixels", "90"},
+                                     {"PoseHeadingDegrees", "12.5"}})
+        as_elements += std::string("<GPano:") + key + ">" + value + "</GPano:" + key + ">";
+    as_elements += "</rdf:Description></rdf:RDF></x:xmpmeta>";
+    const ImageBuf image = part(250, 30, 140, 90);
+    for (const std::string& xmp : {as_attributes, as_elements}) {
+        write_jpeg(image, "camera.jpg", xmp);
+        EXPECT_EQ(says("camera.jpg.pano?size=8", "anamorph:from"),
+                  "equirectangular (as GPano:ProjectionType says, a part of 320x160 at 250,30)");
+        const std::string view = "&yaw=170&fov=60&size=40x30";
+        const std::vector<float> expected =
+            read_floats("plain.jpg.pano?from=equirectangular&srccrop=320x160+250+30&srcyaw=12.5" + view);
+        EXPECT_EQ(largest_difference(read_floats("camera.jpg.pano?mip=0" + view), expected), 0);
+        // Functions know the file of their source.
+        ImageBuf drawn;
+        const ImageBuf source("camera.jpg");
+        ASSERT_TRUE(
+            apply(drawn, "pano", {&source}, options({{"yaw", "170"}, {"fov", "60"}, {"size", "40x30"}})))
+            << drawn.geterror();
+        std::vector<float> pixels(expected.size());
+        drawn.get_pixels(OIIO::ROI(), OIIO::TypeFloat, pixels.data());
+        EXPECT_EQ(largest_difference(pixels, expected), 0);
+    }
+    // What cannot be is none.
+    for (const std::string& xmp : {std::string("no XML"), begin + "GPano:FullPanoWidthPixels='2147483648'/>",
+                                   begin + "GPano:CroppedAreaLeftPixels='nan'/></rdf:RDF></x:xmpmeta>"}) {
+        write_jpeg(image, "camera.jpg", xmp);
+        EXPECT_EQ(largest_difference(read_floats("camera.jpg.pano?from=equirectangular&size=40x30"),
+                                     read_floats("plain.jpg.pano?from=equirectangular&size=40x30")),
+                  0);
+    }
 }
 
 TEST_F(Cameras, ViewsByHeightAndByFocalLength) {

@@ -17,7 +17,8 @@ using lens_formula::Series;
 
 // How far a lens reaches, in distances of the picture's farthest corner: in the observed and in the ideal picture.
 constexpr double kObservedReach = 4, kIdealReach = 16;
-constexpr double kMostValue = 1e6;
+// What OCamCalib's affine part may be: sensors are next to square to their lenses.
+constexpr double kLeastStretch = 0.1, kMostStretch = 10, kMostShear = 1, kLeastArea = 0.01;
 
 struct KindOfLens {
     LensModel::Kind kind;
@@ -34,11 +35,16 @@ const std::vector<KindOfLens>& kinds() {
         {kb4, "kb4", {"k1", "k2", "k3", "k4", "d", "e"}},
         {division, "division", {"k1", "k2", "d", "e"}},
         {poly, "poly", {"k0", "k1", "k2", "k3", "k4", "d", "e"}},
-        {ocam, "ocam", {"a0", "a2", "a3", "a4", "d", "e"}}};
+        {ocam, "ocam", {"a0", "a2", "a3", "a4", "affine_c", "affine_d", "affine_e", "d", "e"}}};
     return all;
 }
 const KindOfLens& kind_of(LensModel::Kind kind) {
     return kinds()[static_cast<std::size_t>(kind)];
+}
+
+/// What a value is that is not given.
+double unsaid(const std::string& name) {
+    return name == "affine_c" ? 1 : 0;
 }
 
 template <class List, class Name>
@@ -96,7 +102,8 @@ LensModel LensModel::parse(std::string_view text, const std::string& parameter) 
     if (kind == kinds().end())
         throw Error(parameter, whole,
                     "must begin with one of " + listed(kinds(), [](const auto& k) { return k.name; }));
-    LensModel model{kind->kind, std::vector<double>(kind->values.size())};
+    LensModel model{kind->kind, {}};
+    for (const std::string& value : kind->values) model.values.push_back(unsaid(value));
     std::set<std::string_view> seen;
     for (std::size_t at = name.size(); at < text.size();) {
         // What stands before is a colon or a comma.
@@ -115,10 +122,11 @@ LensModel LensModel::parse(std::string_view text, const std::string& parameter) 
         double& value = model.values[static_cast<std::size_t>(found - kind->values.begin())];
         const std::string_view number = part.substr(std::min(equals + 1, part.size()));
         const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-        if (error != std::errc() || end != number.data() + number.size() || !(std::fabs(value) <= kMostValue))
+        if (error != std::errc() || end != number.data() + number.size() ||
+            !(std::fabs(value) <= LensModel::kMostValue))
             throw Error(parameter, whole,
-                        std::string(key) + " must be a number from " + brief(-kMostValue) + " to " +
-                            brief(kMostValue));
+                        std::string(key) + " must be a number from " + brief(-LensModel::kMostValue) +
+                            " to " + brief(LensModel::kMostValue));
     }
     return model;
 }
@@ -127,7 +135,7 @@ std::string LensModel::text() const {
     std::string text = kind_of(kind).name;
     char separator = ':';
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (values[i] == 0) continue;
+        if (values[i] == unsaid(names(kind)[i])) continue;
         text += separator + names(kind)[i] + "=" + shortest(values[i]);
         separator = ',';
     }
@@ -140,8 +148,11 @@ double LensModel::magnification() const {
                                 : 1;
 }
 double Lens::magnification() const {
-    return m_terms.of_direction ? 2 * m_terms.under[0].value() / m_terms.over[0].value()
-                                : m_model.magnification();
+    if (!m_terms.of_direction) return m_model.magnification();
+    const Constant(&shear)[4] = m_terms.shear;
+    const double area =
+        m_terms.sheared ? shear[0].value() * shear[3].value() - shear[1].value() * shear[2].value() : 1;
+    return 2 * m_terms.under[0].value() / m_terms.over[0].value() * std::sqrt(area);
 }
 
 Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
@@ -159,6 +170,7 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     belongs_to(kb4, Lensed::equidistant, "fisheye");
     belongs_to(ocam, Lensed::stereographic, "stereographic");
     set_terms();
+    if (model.kind == ocam) set_shear(model.values[4], model.values[5], model.values[6], parameter);
     const long double smaller = std::min(plane.half_width, plane.half_height);
     const bool by_diagonal = model.kind == three_de4 || model.kind == division;
     const bool by_side = model.kind == ptlens || model.kind == poly;
@@ -177,11 +189,10 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     m_terms.shift_y = Constant(e);
     m_terms.shifted = d != 0 || e != 0;
     const auto in_units = [&](long double length) { return static_cast<double>(length / unit); };
-    const double corner =
-        in_units(std::hypot(plane.half_width + std::fabs(d), plane.half_height + std::fabs(e)));
+    const double corner = in_units(farthest_corner(plane, d, e));
     const bool folds = set_ends(corner);
     // The circle in the picture's middle, about the lens's centre.
-    const double asked = in_units(smaller + std::hypot(d, e));
+    const double asked = m_most_unshear * in_units(smaller + std::hypot(d, e));
     if (!(m_terms.observed_end >= asked * (1 - 1e-4))) {
         const auto pixels = [&](double length) {
             return brief(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
@@ -192,6 +203,51 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
                         ", the circle that the picture holds");
     }
     m_terms.table = std::make_shared<const LensTable>(m_terms, corner);
+}
+
+/// How far a picture's corners are from the centre of the lens, which is (d, e) from its middle, before they are sheared.
+long double Lens::farthest_corner(const Plane& plane, long double d, long double e) const {
+    const long double x = plane.half_width + std::fabs(d), y = plane.half_height + std::fabs(e);
+    if (!m_terms.sheared) return std::hypot(x, y);
+    long double farthest = 0;
+    for (const long double across : {-plane.half_width - d, plane.half_width - d})
+        for (const long double down : {-plane.half_height - e, plane.half_height - e}) {
+            const Point<long double> corner =
+                lens_formula::sheared(m_terms, Point<long double>{across, down}, m_terms.unshear);
+            farthest = std::max(farthest, std::hypot(corner.x, corner.y));
+        }
+    return farthest;
+}
+
+/// The matrix (1 e; d c), its inverse, and their largest singular values.
+void Lens::set_shear(double c, double d, double e, const std::string& parameter) {
+    const long double area = static_cast<long double>(c) - static_cast<long double>(d) * e;
+    if (!(c >= kLeastStretch && c <= kMostStretch && std::fabs(d) <= kMostShear &&
+          std::fabs(e) <= kMostShear && area >= kLeastArea))
+        throw Error(parameter, m_model.text(),
+                    "affine_c must be from " + brief(kLeastStretch) + " to " + brief(kMostStretch) +
+                        ", affine_d and affine_e from " + brief(-kMostShear) + " to " + brief(kMostShear) +
+                        ", and affine_c - affine_d affine_e at least " + brief(kLeastArea));
+    m_terms.sheared = c != 1 || d != 0 || e != 0;
+    if (!m_terms.sheared) return;
+    const double shear[4] = {1, e, d, c};
+    const long double unshear[4] = {c / area, -e / area, -d / area, 1 / area};
+    // The area is off by two roundings of c + |d e|, which with area >= kLeastArea are at most 2 (10 + 1) / 0.01 of it.
+    constexpr double kOff = 2 * (kMostStretch + kMostShear * kMostShear) / kLeastArea + 2;
+    double square = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        m_terms.shear[i] = Constant(shear[i], 0);
+        const double size = static_cast<double>(std::fabs(unshear[i]));
+        m_terms.unshear[i] = Constant(unshear[i], kOff * Rounded<long double>::kUnit * size);
+        square += shear[i] * shear[i];
+    }
+    // Of singular values a >= b, a^2 + b^2 is the sum of the squares and a b the determinant. Where they are next to equal a
+    // difference of 2^-26 of them is lost, as it is squared.
+    const double determinant = static_cast<double>(area);
+    const double most =
+        std::sqrt((square + std::sqrt(std::max(0.0, square * square - 4 * determinant * determinant))) / 2);
+    m_most_shear = most * (1 + 0x1p-25);
+    m_most_unshear = most / determinant * (1 + 0x1p-25);
 }
 
 void Lens::set_terms() {

@@ -21,7 +21,8 @@
 //            the models of Lensfun are. Unit: half of the picture's smaller side. For projections with an axis.
 //   ocam     observed to ideal, where r pixels are seen at the angle atan2(r, g), g = |a0 + a2 r^2 + a3 r^3 + a4 r^4| with the
 //            sign that it has where a0 is positive: v = u 2 / (g + sqrt(g^2 + r^2)); Scaramuzza, Martinelli and Siegwart 2006,
-//            OCamCalib without its affine part. For stereographic pictures; whatever their field of view, a0 is the focal length.
+//            OCamCalib. For stereographic pictures; whatever their field of view, a0 is the focal length. What is observed is
+//            not u = (x, y) but (x + affine_e y, affine_d x + affine_c y), OCamCalib's affine part, whose x is our y.
 //
 // The lens's centre stands d pixels right of the picture's middle and e below it; the axis of sight meets the plane
 // there. The focal length is that of the field of view without distortion.
@@ -51,11 +52,12 @@ struct LensModel {
     /// The models described at the head of this file.
     enum class Kind { none, ptlens, brown, three_de4, kb4, division, poly, ocam };
     Kind kind = Kind::none;
-    /// The values of the model, in the order of names().
+    /// The values of the model, in the order of names(): no magnitude is above kMostValue.
     std::vector<double> values;
+    static constexpr double kMostValue = 1e6;
 
     /// Parses "none", or MODEL:name=value,name=value as in "ptlens:a=0.01,b=-0.03"; a parameter that is not named is
-    /// 0. Throws Error naming `parameter`.
+    /// 0, and affine_c is 1. Throws Error naming `parameter`.
     static LensModel parse(std::string_view text, const std::string& parameter = "lens");
     /// The text that parse() reads as this model.
     std::string text() const;
@@ -78,6 +80,10 @@ struct LensTerms {
     /// Is the lens's centre another point than the picture's middle?
     bool shifted = false;
 
+    /// Is what is observed sheared about the centre? Then by this matrix, row by row, whose inverse is `unshear`.
+    bool sheared = false;
+    Constant shear[4], unshear[4];
+
     /// Is S a polynomial in r, not in r^2?
     bool in_radius = false;
     /// Is there a part that is not radial (tangential_at())? Then `m`, the tangential one, and of a thin prism `a` and `b`.
@@ -88,7 +94,8 @@ struct LensTerms {
     /// Is what is below the line g the component ahead of a direction that is r across, and S over / (g + sqrt(g^2 + r^2))?
     bool of_direction = false;
 
-    /// The largest distances of the ideal and of the observed points from the centre, in the model's unit.
+    /// The largest distances of the ideal and of the observed points from the centre, in the model's unit; of the observed ones
+    /// before they are sheared.
     double ideal_end = 0, observed_end = 0;
     /// The largest t (radial_of()) before the lens's end, and a lower bound of radial_at() there.
     double end = 0, value_end = 0;
@@ -217,10 +224,13 @@ class Lens {
     }
 
     /// The largest distance of an observed point from the lens's centre, in units of the plane.
-    double reach() const { return m_terms.observed_end * m_terms.unit.value(); }
+    double reach() const { return m_terms.observed_end * m_terms.unit.value() * m_most_shear; }
 
   private:
     void set_terms();
+    long double farthest_corner(const Plane& plane, long double d, long double e) const;
+    /// `c`, `d` and `e` of OCamCalib; throws Error naming `parameter` where they squeeze a picture too much.
+    void set_shear(double c, double d, double e, const std::string& parameter);
     /// Returns whether the lens ends because it folds. `corner`: the farthest observed point of the picture.
     bool set_ends(double corner);
     /// The condition number of radial_at() over an interval: the magnitude to which its rounding is relative, over its value.
@@ -228,6 +238,8 @@ class Lens {
 
     LensModel m_model;
     LensTerms m_terms;
+    /// At least the largest factors by which the shear and its inverse make distances longer.
+    double m_most_shear = 1, m_most_unshear = 1;
 };
 
 // ---------------------------------------------------------------------------------------------------------

@@ -358,12 +358,22 @@ Point<T> scaled(const LensTerms& lens, const Point<T>& p, const Constant& scale)
     const auto k = scale.as<T>();
     return {p.x * k, p.y * k};
 }
-/// A point of the observed plane in the lens's units, relative to the lens's centre.
+/// A point times the matrix `shear` or `unshear` of a lens.
+template <class T>
+Point<T> sheared(const LensTerms& lens, const Point<T>& p, const Constant (&by)[4]) {
+    if (!lens.sheared) return p;
+    return {p.x * by[0].as<T>() + p.y * by[1].as<T>(), p.x * by[2].as<T>() + p.y * by[3].as<T>()};
+}
+/// A point of the observed plane in the lens's units, relative to the lens's centre, as it is before it is sheared.
 template <class T>
 Point<T> centred(const LensTerms& lens, const Point<T>& observed) {
-    if (leaves_out<T>() && !lens.shifted) return scaled(lens, observed, lens.per_unit);
-    return scaled(lens, Point<T>{observed.x - lens.shift_x.as<T>(), observed.y - lens.shift_y.as<T>()},
-                  lens.per_unit);
+    if (leaves_out<T>() && !lens.shifted)
+        return sheared(lens, scaled(lens, observed, lens.per_unit), lens.unshear);
+    return sheared(
+        lens,
+        scaled(lens, Point<T>{observed.x - lens.shift_x.as<T>(), observed.y - lens.shift_y.as<T>()},
+               lens.per_unit),
+        lens.unshear);
 }
 
 /// The point of the ideal plane for a point of the observed plane; observed_point() is its inverse.
@@ -375,7 +385,8 @@ Point<T> ideal_point(const LensTerms& lens, const Point<T>& observed) {
 template <class T>
 Point<T> observed_point(const LensTerms& lens, const Point<T>& ideal) {
     const Point<T> p = scaled(lens, ideal, lens.per_unit);
-    const Point<T> q = scaled(lens, lens.to_observed ? distorted(lens, p) : undistorted(lens, p), lens.unit);
+    const Point<T> made = lens.to_observed ? distorted(lens, p) : undistorted(lens, p);
+    const Point<T> q = scaled(lens, sheared(lens, made, lens.shear), lens.unit);
     if (leaves_out<T>() && !lens.shifted) return q;
     return {q.x + lens.shift_x.as<T>(), q.y + lens.shift_y.as<T>()};
 }

@@ -65,7 +65,7 @@ Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
     const bool undistort = mode == LensMode::undistort;
     const double half_width = 0.5 * size.width * observed.units_per_pixel().value(),
                  half_height = 0.5 * size.height * observed.units_per_pixel_down().value();
-    const double end = (undistort ? terms.ideal_end : terms.observed_end) * terms.unit.value();
+    const double end = undistort ? terms.ideal_end * terms.unit.value() : lens.reach();
     const double end_across = (end + std::fabs(terms.shift_x.value())) * observed.scale_x(),
                  end_down = (end + std::fabs(terms.shift_y.value())) * observed.scale_y();
     const Point<Interval> shift{terms.shift_x.as<Interval>(), terms.shift_y.as<Interval>()};

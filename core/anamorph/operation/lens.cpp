@@ -32,7 +32,8 @@ ParameterTable make_lens_table() {
         text("lens",
              "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2, s1 to s4), 3de4 "
              "(k1, k2), "
-             "kb4 (k1 to k4), division (k1, k2), poly (k0 to k4) or ocam (a0, a2, a3, a4), and d, e, the "
+             "kb4 (k1 to k4), division (k1, k2), poly (k0 to k4) or ocam (a0, a2, a3, a4, affine_c to "
+             "affine_e), and d, e, the "
              "shift of its "
              "centre in pixels, which stays where it is; or lensfun:lens=NAME,camera=NAME,focal=35; by "
              "default what the "

@@ -179,7 +179,8 @@ ParameterTable make_pano_table() {
         text("lens",
              "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
              "(k1 to k6, p1, p2, s1 to s4), 3de4 (k1, k2), kb4 (k1 to k4), division (k1, k2), "
-             "poly (k0 to k4) or ocam (a0, a2, a3, a4), and d, e, the shift of its centre in pixels, or "
+             "poly (k0 to k4) or ocam (a0, a2, a3, a4, affine_c to affine_e), and d, e, the shift of its "
+             "centre in pixels, or "
              "lensfun:lens=NAME,camera=NAME,focal=35; by "
              "default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
