@@ -57,7 +57,10 @@ class Checker {
                            in_quotes(ellipsoid(figure.ellipsoids.front())) +
                            ": it will not move with the figure");
         }
-        if (m_program.dialect == Dialect::strict) check_calls();
+        if (m_program.dialect == Dialect::strict) {
+            check_calls();
+            check_handed_over();
+        }
         check_ends();
     }
 
@@ -95,6 +98,46 @@ class Checker {
                 return report(
                     true, m_program.subroutines[i].position,
                     "subroutines call themselves, by way of " + in_quotes(m_program.subroutines[i].name));
+    }
+
+    /// Letters that each parameter of a subroutine stands for.
+    std::vector<std::string> uses_of(const Subroutine& subroutine) const {
+        std::vector<std::string> uses(subroutine.parameters.size());
+        const auto note = [&](const Operand& operand, char letter) {
+            if (operand.kind == OperandKind::parameter)
+                uses[static_cast<std::size_t>(operand.index)] += letter;
+        };
+        for (const Movement& m : subroutine.movements) {
+            note(m.start, 'n');
+            note(m.stop, 'n');
+            const std::string_view letters = script_table::operands_of(m.action);
+            for (std::size_t i = 0; i < letters.size(); ++i) note(m.operands[i], letters[i]);
+        }
+        for (std::string& letters : uses) {
+            std::sort(letters.begin(), letters.end());
+            letters.erase(std::unique(letters.begin(), letters.end()), letters.end());
+        }
+        return uses;
+    }
+
+    /// Whether calls hand over as many values as there are parameters, and what these stand for.
+    void check_handed_over() {
+        std::vector<std::vector<std::string>> uses;
+        for (const Subroutine& s : m_program.subroutines) uses.push_back(uses_of(s));
+        for (const Subroutine& s : m_program.subroutines)
+            for (const Movement& m : s.movements) {
+                if (m.action != Action::call || m.operands[0].kind != OperandKind::subroutine) continue;
+                const auto to = static_cast<std::size_t>(m.operands[0].index);
+                const Subroutine& called = m_program.subroutines[to];
+                if (const std::string fault = wrong_count(called, m.operands.size() - 1); !fault.empty()) {
+                    report(true, m.position, fault);
+                    continue;
+                }
+                for (std::size_t i = 0; i < called.parameters.size(); ++i)
+                    for (const char letter : uses[to][i])
+                        if (!fits(letter, m.operands[i + 1]))
+                            report(true, m.position, wrong_value(called, i, letter, m.operands[i + 1]));
+            }
     }
 
     /// Which subroutines the script may come to: all, where a variable says which.
@@ -175,6 +218,21 @@ class Checker {
 };
 
 }  // namespace
+
+std::string wrong_count(const Subroutine& called, std::size_t values) {
+    const std::size_t wanted = called.parameters.size();
+    if (values == wanted) return {};
+    return "call hands over " + std::to_string(values) + " values, but the parameters of " +
+           in_quotes(called.name) + " are " + std::to_string(wanted) +
+           (values == 0 ? ": after the name stand how many values follow, and these" : "");
+}
+
+std::string wrong_value(const Subroutine& called, std::size_t parameter, char letter,
+                        const Operand& operand) {
+    return "call hands over " + std::string(description_of(operand.kind)) + ", but the parameter " +
+           in_quotes(called.parameters[parameter]) + " of " + in_quotes(called.name) + " stands for " +
+           description_of(letter);
+}
 
 void check_program(Script& script) {
     Checker(script).check();

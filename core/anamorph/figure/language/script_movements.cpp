@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Movements, and the names in them that are declared later.
 #include <algorithm>
+#include <utility>
 
 #include "anamorph/figure/language/script_parser.h"
 #include "anamorph/parameter/text_file.h"
@@ -44,6 +45,14 @@ void ScriptParser::movement(Distribution distribution) {
     }
     m.action = entry->action;
     for (const char letter : entry->operands) m.operands.push_back(take(letter, 2 + m.operands.size()));
+    if (m.action == Action::call && strict() && looks_like_number(peek().text)) {
+        const int count =
+            take_integer("the number of values handed over, an integer of at least 0", 0, kMostCount);
+        for (int i = 0; i < count; ++i) {
+            m.operands.push_back(take('*', 2 + m.operands.size()));
+            check_size(m.operands.size(), m.position);
+        }
+    }
     if (!usable) return;
     check_frames(m);
     auto& movements = m_program.subroutines[static_cast<std::size_t>(m_subroutine)].movements;
@@ -76,6 +85,10 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
         if (!number || (letter != 'n' && letter != '*')) return refuse();
         return {OperandKind::number, *number, 0};
     }
+    if (const auto parameter = parameter_of(token.text)) {
+        m_uses[{m_subroutine, *parameter}] += letter;
+        return {OperandKind::parameter, 0, *parameter};
+    }
     if (const auto found = m_symbols.resolve(letter, token.text)) {
         if (letter == 'v' && found->kind != OperandKind::variable) return refuse();
         return *found;
@@ -99,9 +112,29 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     return {};
 }
 
+std::optional<int> ScriptParser::parameter_of(std::string_view name) const {
+    const auto found = m_parameters.find(name);
+    return found == m_parameters.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<Operand> ScriptParser::made_for_parameter(const Pending& pending) {
+    const Movement& m =
+        m_program.subroutines[static_cast<std::size_t>(pending.subroutine)].movements[pending.movement];
+    if (pending.operand < 3 || m.action != Action::call || m.operands[0].kind != OperandKind::subroutine)
+        return std::nullopt;
+    const auto uses = m_uses.find({m.operands[0].index, static_cast<int>(pending.operand) - 3});
+    if (uses == m_uses.end()) return std::nullopt;
+    for (const auto& [letter, kind] : {std::pair('i', OperandKind::image), std::pair('J', OperandKind::joint),
+                                       std::pair('F', OperandKind::figure)})
+        if (uses->second.find(letter) != std::string::npos)
+            return Operand{kind, 0, m_symbols.make(kind, pending.name, pending.position)};
+    return std::nullopt;
+}
+
 void ScriptParser::resolve_pending() {
     for (const Pending& p : m_pending) {
-        const auto found = m_symbols.resolve(p.letter, p.name);
+        auto found = m_symbols.resolve(p.letter, p.name);
+        if (!found) found = made_for_parameter(p);
         const bool wrong = found && p.letter == 'v' && found->kind != OperandKind::variable;
         const bool undefined =
             found && found->kind == OperandKind::subroutine && !m_defined_subroutines.contains(found->index);

@@ -2,6 +2,8 @@
 // The parser behind parse_script().
 #pragma once
 
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,6 +18,8 @@ namespace anamorph::figure {
 
 /// The largest number of a frame; numbers beyond it, either way, count as this.
 inline constexpr int kLargestFrame = 1000000000;
+/// The largest number that a statement counts its names by.
+inline constexpr int kMostCount = 1 << 20;
 
 class ScriptParser {
   public:
@@ -55,6 +59,7 @@ class ScriptParser {
     void limit();
     void variables();
     void begin_subroutine();
+    void parameters();
     void end_subroutine();
     void speed();
     void view();
@@ -71,6 +76,10 @@ class ScriptParser {
     int take_integer(const char* expected, int smallest, int largest);
     int take_mention(OperandKind kind);  ///< an ellipsoid: made when it is new
     Operand take_value(char letter, Pending& pending, bool& waits, bool& usable);
+    /// The parameter of the subroutine being read that has this name.
+    std::optional<int> parameter_of(std::string_view name) const;
+    /// What a call hands over that is known by what the parameter stands for alone: a picture, or what an action makes.
+    std::optional<Operand> made_for_parameter(const Pending& pending);
     void check_frames(const Movement& movement);
     void resolve_pending();
 
@@ -96,9 +105,11 @@ class ScriptParser {
     int m_file = 0;
     const script_table::Entry* m_entry = nullptr;  ///< entry of the statement or action being read
     ScriptPosition m_entry_position;
-    std::set<std::string, std::less<>> m_short_forms;     ///< short forms that have been warned of
-    int m_subroutine = 0;                                 ///< the subroutine that is being read
-    std::set<int> m_defined_subroutines{0}, m_shaped{0};  ///< declared in full, not only named
+    std::set<std::string, std::less<>> m_short_forms;      ///< short forms that have been warned of
+    int m_subroutine = 0;                                  ///< the subroutine that is being read
+    std::set<int> m_defined_subroutines{0}, m_shaped{0};   ///< declared in full, not only named
+    std::map<std::string, int, std::less<>> m_parameters;  ///< of the subroutine that is being read
+    std::map<std::pair<int, int>, std::string> m_uses;  ///< letters that a subroutine's parameter stands for
     std::vector<std::string> m_including;
     std::size_t m_included_bytes = 0;
     std::vector<Pending> m_pending;
@@ -113,6 +124,11 @@ inline bool runs_backwards(const Movement& m) {
     return m.start.kind == OperandKind::number && m.stop.kind == OperandKind::number &&
            m.stop.number < m.start.number;
 }
+
+/// What is wrong with the number of values that a call hands over; empty where nothing is.
+std::string wrong_count(const Subroutine& called, std::size_t values);
+/// What to say of an operand that does not fit the letter which a parameter stands for.
+std::string wrong_value(const Subroutine& called, std::size_t parameter, char letter, const Operand& operand);
 
 /// Checks what only the whole program shows: rings of joints, figures in pieces, subroutines that call
 /// themselves.
