@@ -3,7 +3,11 @@
 
 #include "anamorph/metadata.h"
 
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/strutil.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -221,6 +225,13 @@ void check_sides(int width, int height, const std::string& image) {
                     std::to_string(kMostSide) + "x" + std::to_string(kMostSide));
 }
 
+/// Does a name end as those of JPEG files do? Others are not opened once more.
+bool is_named_jpeg(const std::string& name) {
+    const std::string ending = OIIO::Strutil::lower(OIIO::Filesystem::extension(name, false));
+    constexpr std::array kEndings = {"jpg", "jpeg", "jpe", "jif", "jfif", "jfi"};
+    return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
 }  // namespace
 
 void check_windows(const ImageSpec& spec, const std::string& image) {
@@ -302,7 +313,8 @@ void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::st
         throw Error("source \"" + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why));
     }
     check_source(base, m_shown);
-    if (m_subimage == 0 && m_first_level == 0) add_photo_sphere(base, m_name.string());
+    if (m_subimage == 0 && m_first_level == 0 && is_named_jpeg(m_name.string()))
+        add_photo_sphere(base, m_name.string());
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);

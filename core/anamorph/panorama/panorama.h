@@ -105,7 +105,7 @@ class Panorama {
     /// A number that is positive where there is a source point, and changes sign where those end: at the rim of either picture. Pieces of
     /// sources that have several end by none.
     double end(double x, double y, int piece) const;
-    Interval end(const Interval& x, const Interval& y, int piece) const;
+    Interval end(const Interval& x, const Interval& y, int piece) const;  ///< Encloses it over a box.
 
     /// Bounds the rounding of exact<Real>, its result kept in double, over a box of target points: the
     /// distance from the truth in source pixels. Around a source with azimuths, points a full turn apart
