@@ -90,6 +90,8 @@ OTHERS = [
     Other("c++", "#include <anamorph/panorama.h>", "example_panorama"),
     Other("c++", "#include <anamorph/oiio_ops.h>", "consumer: readme_oiio_example"),
     Other("nudes", "* What is behind a star", "command", "one.nudes"),
+    Other("nudes", "subroutine wave 3 limb at angle", "command", "wave.nudes",
+          "anamorph-figure frames --dialect strict wave.nudes -o wave.3"),
     Other("nudes", "quadratic 25 49 moveby ball", "command: test_every_script_of_the_tutorial_runs"),
     Other("nudes", "joint ankle foot", "command: test_every_script_of_the_tutorial_runs"),
     Other("nudes", "figure pip 5", "command: test_every_script_of_the_tutorial_runs"),
