@@ -35,8 +35,7 @@ ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamor
 # Classes whose properties are an operation's parameters, under the same names.
 OPERATION_OF = {"vtkAnamorphDrape": "drape"}
 # Parameters of those that are no property, as VTK has its own words for them, or does without.
-NOT_OFFERED = {"drape_data_filter", "drape_fov", "drape_scale", "drape_block", "drape_overlap",
-               "drape_view", "drape_wrap", "drape_scheme", "drape_output"}
+NOT_OFFERED = {"drape_data_filter", "drape_fov", "drape_scale", "drape_view", "drape_wrap", "drape_output"}
 # Numbers that the panel has in a table, where they have no range of their own.
 IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.

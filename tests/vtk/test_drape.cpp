@@ -18,6 +18,7 @@
 #include <vtkStructuredGrid.h>
 #include <vtkTable.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkVariant.h>
 
 #include <cmath>
 #include <cstring>
@@ -308,14 +309,14 @@ std::vector<anamorph::Assignment> arguments_of(const Case& c) {
 }
 
 /// What the operation draws, as VTK says it.
-std::vector<double> wanted_of(const Case& c, vtkImageData* texture) {
+std::vector<double> wanted_of(const Case& c, vtkImageData* texture,
+                              const std::vector<anamorph::Assignment>& arguments) {
     const int channels[] = {c.components, 2, 1, 3};
     const int count = channels[c.style];
     const auto row = static_cast<std::size_t>(kScreen.width * count);
     if (c.style == Drape::COLOR)
-        return turned_over(by_operation<unsigned char>(texture, arguments_of(c), kScreen, count), row);
-    std::vector<double> wanted =
-        turned_over(by_operation<float>(texture, arguments_of(c), kScreen, count), row);
+        return turned_over(by_operation<unsigned char>(texture, arguments, kScreen, count), row);
+    std::vector<double> wanted = turned_over(by_operation<float>(texture, arguments, kScreen, count), row);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
         if (c.style == Drape::DEPTH && std::isinf(wanted[k])) wanted[k] = 1e30f;
         if (c.style == Drape::TEXTURE_COORDINATES && k % 2 == 1 && wanted[k] >= 0)
@@ -336,8 +337,187 @@ TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
                 vtkNew<Drape> filter;
                 filter->SetInputData(texture);
                 set(filter, c);
-                ASSERT_EQ(drawn_numbers(filter), wanted_of(c, texture));
+                ASSERT_EQ(drawn_numbers(filter), wanted_of(c, texture, arguments_of(c)));
             }
+}
+
+// ---- The paper's own schemes ----
+
+const char* const kSchemes[] = {"auto", "exact", "oka", "oka-z", "hardware"};
+
+/// What the filter draws by a scheme is the operation's picture.
+void expect_scheme(const Case& c, int scheme, const std::string& machine = "") {
+    SCOPED_TRACE(testing::Message() << kSchemes[scheme] << " surface " << c.surface << " style " << c.style
+                                    << " filter " << c.filter << " " << machine);
+    const Picture texture = picture(80, 50, VTK_UNSIGNED_CHAR, c.components);
+    vtkNew<Drape> filter;
+    Errors errors(filter);
+    filter->SetInputData(texture);
+    set(filter, c);
+    std::vector<anamorph::Assignment> arguments = arguments_of(c);
+    if (scheme == Drape::HARDWARE) {
+        filter->SetBackground(0, 0, 0, 0);
+        arguments.pop_back();
+    }
+    filter->SetScheme(scheme);
+    filter->SetBlock(5.5);
+    filter->SetOverlap(0.75);
+    arguments.insert(arguments.end(), {{"scheme", kSchemes[scheme]}, {"block", "5.5"}, {"overlap", "0.75"}});
+    if (!machine.empty()) {
+        filter->SetMachine(machine.c_str());
+        arguments.push_back({"machine", machine});
+    }
+    const std::vector<double> seen = drawn_numbers(filter);
+    ASSERT_EQ(errors.text(), "");
+    ASSERT_EQ(seen, wanted_of(c, texture, arguments));
+}
+
+TEST(VtkDrape, EverySchemeHasThePixelsOfTheOperation) {
+    for (const int scheme : {Drape::AUTO, Drape::EXACT, Drape::OKA, Drape::OKA_Z, Drape::HARDWARE})
+        for (const int surface : {Drape::CYLINDER, Drape::PAGE_TURN, Drape::RIPPLES})
+            for (const bool parallel : {false, true}) {
+                const bool by_machine = scheme == Drape::HARDWARE;
+                for (const int filter : {Drape::NEAREST, Drape::BILINEAR, Drape::ANTIALIAS})
+                    expect_scheme({surface, parallel, filter, Drape::COLOR, filter ? 4 : 3}, scheme);
+                for (int style = Drape::TEXTURE_COORDINATES;
+                     style <= (by_machine ? Drape::TEXTURE_COORDINATES : Drape::NORMAL); ++style)
+                    expect_scheme({surface, parallel, Drape::ANTIALIAS, style, 3}, scheme);
+            }
+}
+
+TEST(VtkDrape, AMachineHasThePixelsOfTheOperation) {
+    for (const char* machine : {"oka-1987", "oka-1987:block=4,fraction_bits=2,overlap=0",
+                                R"({"block": 16, "weight_bits": 3, "texel_bits": 5})"})
+        for (const int style : {Drape::COLOR, Drape::TEXTURE_COORDINATES})
+            expect_scheme({Drape::WAVES, false, Drape::BILINEAR, style, 4}, Drape::HARDWARE, machine);
+}
+
+TEST(VtkDrape, SchemesOfThePaperAreOfSeveralPictures) {
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(40, 32));
+    filter->SetSurface(Drape::RIPPLES);
+    filter->SetViewSize(64, 64);
+    filter->SetCameraPosition(0.5, 0.6, 1.7);
+    std::vector<std::vector<double>> seen;
+    for (int scheme = Drape::AUTO; scheme <= Drape::HARDWARE; ++scheme) {
+        filter->SetScheme(scheme);
+        seen.push_back(drawn_numbers(filter));
+        EXPECT_GT(filter->GetMaxError(), 0) << scheme;
+        // Only blocks of 8 pixels are off by more than was asked for.
+        EXPECT_EQ(filter->GetMaxError() > filter->GetTolerance(), scheme >= Drape::OKA) << scheme;
+        for (std::size_t i = 0; i + 1 < seen.size(); ++i) EXPECT_NE(seen[i], seen.back()) << scheme << i;
+    }
+    // Finer blocks and addresses are nearer.
+    const double coarse = filter->GetMaxError();
+    filter->SetMachine("oka-1987:block=2,fraction_bits=16");
+    filter->Update();
+    EXPECT_LT(filter->GetMaxError(), coarse / 2);
+}
+
+TEST(VtkDrape, WhatTheMachineSaysIsInFields) {
+    const Picture texture = picture(40, 32);
+    vtkNew<Drape> filter;
+    filter->SetInputData(texture);
+    filter->SetSurface(Drape::WAVES);
+    filter->SetViewSize(64, 64);
+    filter->SetScheme(Drape::HARDWARE);
+    filter->SetMachine("oka-1987:fraction_bits=2,overlap=0");
+    filter->Update();
+    const anamorph::Operation& drape = *anamorph::find_operation("drape");
+    anamorph::ParameterValues values(*drape.parameters);
+    values.assign({{"surface", "waves"},
+                   {"scheme", "hardware"},
+                   {"machine", "oka-1987:fraction_bits=2,overlap=0"},
+                   {"size", "64x64"},
+                   {"camera", "0,0,2"},
+                   {"fov", fov_of(30, 1)}});
+    anamorph::SourceImage source;
+    source.facts.width = 40;
+    source.facts.height = 32;
+    source.channels = 3;
+    const Files files;
+    const anamorph::Attributes wanted = drape.read({values, {source}, files.names(), files})
+                                            ->picture(0, 0)
+                                            ->solve()
+                                            ->reached(anamorph::serial_for);
+    EXPECT_GE(wanted.size(), 8u);
+    vtkFieldData* fields = filter->GetOutput()->GetFieldData();
+    for (const anamorph::Attribute& attribute : wanted) {
+        if (attribute.name == "anamorph:max_error") {
+            EXPECT_EQ(std::get<double>(attribute.value), filter->GetMaxError());
+            continue;
+        }
+        vtkAbstractArray* array = fields->GetAbstractArray(attribute.name.c_str());
+        ASSERT_TRUE(array) << attribute.name;
+        ASSERT_EQ(array->GetNumberOfTuples(), 1);
+        const vtkVariant value = array->GetVariantValue(0);
+        if (const auto* text = std::get_if<std::string>(&attribute.value))
+            EXPECT_EQ(value.ToString(), *text);
+        else if (const auto* number = std::get_if<double>(&attribute.value))
+            EXPECT_EQ(value.ToDouble(), *number) << attribute.name;
+        else
+            EXPECT_EQ(value.ToInt(), std::get<int>(attribute.value)) << attribute.name;
+    }
+    filter->SetScheme(Drape::OKA);
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetNumberOfArrays(), 0);
+}
+
+TEST(VtkDrape, WhatASchemeCannotMeanIsAnErrorThatNamesTheProperty) {
+    const auto error = [](int scheme, const std::function<void(Drape*)>& set) {
+        return errors_of<Drape>(picture(8, 8), [&](Drape* f) {
+            f->SetScheme(scheme);
+            set(f);
+        });
+    };
+    for (int scheme = Drape::AUTO; scheme <= Drape::HARDWARE; ++scheme) {
+        EXPECT_EQ(error(scheme, [](Drape*) {}), "");
+        for (const double value : {kNan, kInf, -kInf, -1.0, 0.24, 4097.0, 2147483648.0}) {
+            EXPECT_THAT(error(scheme, [=](Drape* f) { f->SetBlock(value); }), HasSubstr("Block="));
+            if (value == 0.24) continue;
+            EXPECT_THAT(error(scheme, [=](Drape* f) { f->SetOverlap(value); }), HasSubstr("Overlap="));
+        }
+        for (const char* machine : {"oka-1988", "oka-1987:block=0", "oka-1987:block=nan", "{\"block\": 4",
+                                    "oka-1987:no_such_key=1", "ps20"})
+            EXPECT_THAT(error(scheme, [=](Drape* f) { f->SetMachine(machine); }), HasSubstr("Machine"))
+                << machine;
+    }
+    EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetStyle(Drape::DEPTH); }),
+                HasSubstr("Style=depth: must be color or texture coordinates with Scheme=hardware"));
+    EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetStyle(Drape::NORMAL); }),
+                HasSubstr("Style=normal: must be"));
+    EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetBackground(0, 0.5, 0, 1); }),
+                HasSubstr("Background=0,0.5,0,1: must be 0,0,0,0 with Scheme=hardware"));
+    for (const auto& [filter, word] : {std::pair{Drape::BICUBIC, "bicubic"},
+                                       {Drape::PYRAMID, "pyramid"},
+                                       {Drape::SUMMED_AREA, "summed_area"}}) {
+        const int chosen = filter;
+        EXPECT_THAT(error(Drape::HARDWARE, [=](Drape* f) { f->SetFilter(chosen); }),
+                    HasSubstr(std::string("Filter=") + word + ": must be antialias, bilinear or nearest"));
+    }
+}
+
+TEST(VtkDrape, PartsAndThreadsGiveTheBitsOfTheWholeByTheMachineToo) {
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(30, 20));
+    filter->SetSurface(Drape::PAGE_TURN);
+    filter->SetScheme(Drape::HARDWARE);
+    filter->SetViewSize(70, 50);
+    const std::vector<double> whole = drawn_numbers(filter);
+    for_any_threads([&] {
+        filter->Modified();
+        ASSERT_EQ(drawn_numbers(filter), whole);
+    });
+    const int extent[6] = {11, 53, 20, 31, 0, 0};
+    filter->Modified();
+    filter->UpdateExtent(extent);
+    vtkImageData* part = filter->GetOutput();
+    ASSERT_EQ(part->GetNumberOfPoints(), 43 * 12);
+    for (int y = 20; y <= 31; ++y)
+        for (int x = 11; x <= 53; ++x)
+            for (int c = 0; c < 3; ++c)
+                ASSERT_EQ(part->GetScalarComponentAsDouble(x, y, 0, c),
+                          whole[static_cast<std::size_t>(3 * (y * 70 + x) + c)]);
 }
 
 // ---- Light, sampled surfaces, reliefs, blends, deformations ----
@@ -460,6 +640,24 @@ TEST(VtkDrape, ShadingHasThePixelsOfTheOperation) {
                   {"specular", "0.4"},
                   {"shininess", "9"}}});
         }
+}
+
+TEST(VtkDrape, TheMachineShadesAsInTheOperation) {
+    for (const auto& [shading, word] : {std::pair{Drape::GOURAUD, "gouraud"}, {Drape::PHONG, "phong"}}) {
+        const int chosen = shading;
+        expect_pixels_of_operation({[=](Drape* f) {
+                                        f->SetSurface(Drape::SPHERE);
+                                        f->SetShading(chosen);
+                                        f->SetScheme(Drape::HARDWARE);
+                                        f->SetLight(0, 1, 2, 3);
+                                        f->SetSpecular(0.4);
+                                    },
+                                    {{"surface", "sphere"},
+                                     {"shading", word},
+                                     {"scheme", "hardware"},
+                                     {"light", "1,2,3"},
+                                     {"specular", "0.4"}}});
+    }
 }
 
 TEST(VtkDrape, ASampledSurfaceHasThePixelsOfTheOperation) {
@@ -1017,6 +1215,10 @@ TEST(VtkDrape, UpdatesOnlyAfterAChangeOfAValue) {
                                [](Drape* f) { f->SetFilter(Drape::BICUBIC); },
                                [](Drape* f) { f->SetBackground(1, 0, 0, 1); },
                                [](Drape* f) { f->SetStyle(Drape::DEPTH); },
+                               [](Drape* f) { f->SetScheme(Drape::OKA_Z); },
+                               [](Drape* f) { f->SetBlock(4); },
+                               [](Drape* f) { f->SetOverlap(1); },
+                               [](Drape* f) { f->SetMachine("oka-1987"); },
                                [](Drape* f) { f->SetBlendWeight(Drape::PLANE, 0.1); },
                                [](Drape* f) { f->SetHeightScale(0.3); },
                                [](Drape* f) { f->SetHeightSmooth(0.3); },
@@ -1080,6 +1282,10 @@ TEST(VtkDrape, PrintsItsState) {
                             "Specular: 0",
                             "Shininess: 20",
                             "Style: color",
+                            "Scheme: auto",
+                            "Block: 8",
+                            "Overlap: 0.5",
+                            "Machine: (none)",
                             "MaxError: 0"});
 }
 

@@ -8,15 +8,19 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <map>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "anamorph/error.h"
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/source.h"
+#include "anamorph/operation/block_drape.h"
 #include "anamorph/operation/drape.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
@@ -30,10 +34,12 @@
 #include "input_times.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -57,11 +63,13 @@ constexpr float kFar = 1e30f;  ///< the depth where nothing is seen
 constexpr anamorph::NumberRow kCoordinateRow{"coordinate", 0, -1e6, 1e6};
 
 const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal"};
-// The operation's words for the values of Filter and Shading.
+// The operation's words for the values of Filter, Shading and Scheme.
 constexpr std::array kFilters = {"nearest", "bilinear", "bicubic", "antialias", "pyramid", "summed_area"};
 static_assert(kFilters.size() == vtkAnamorphDrape::SUMMED_AREA + 1);
 constexpr std::array kShadings = {"none", "gouraud", "phong"};
 static_assert(kShadings.size() == vtkAnamorphDrape::PHONG + 1);
+constexpr std::array kSchemes = {"auto", "exact", "oka", "oka-z", "hardware"};
+static_assert(kSchemes.size() == vtkAnamorphDrape::HARDWARE + 1);
 
 // Header and core have been made of the same list.
 static_assert(vtkAnamorphDrape::NumberOfSurfaces == 2
@@ -119,12 +127,60 @@ vtkDataArray* array_of(vtkDataSet* data, const std::string& name) {
     return name.empty() ? data->GetPointData()->GetScalars() : data->GetPointData()->GetArray(name.c_str());
 }
 
-void add_missing(const std::string& text, vtkDataObject* output) {
-    vtkNew<vtkStringArray> array;
-    array->SetName("anamorph:missing");
-    array->InsertNextValue(text);
-    output->GetFieldData()->AddArray(array);
+/// Adds a field array of one value.
+void add_field(const anamorph::Attribute& attribute, vtkDataObject* output) {
+    const auto add = [&](const auto& array, const auto& value) {
+        array->SetName(attribute.name.c_str());
+        array->InsertNextValue(value);
+        output->GetFieldData()->AddArray(array);
+    };
+    if (const auto* text = std::get_if<std::string>(&attribute.value))
+        add(vtkNew<vtkStringArray>(), *text);
+    else if (const auto* number = std::get_if<double>(&attribute.value))
+        add(vtkNew<vtkDoubleArray>(), *number);
+    else
+        add(vtkNew<vtkIntArray>(), std::get<int>(attribute.value));
 }
+
+/// A drape, by patches and blocks or by the machine, ready to draw.
+class ReadyDrape {
+  public:
+    /// Throws anamorph::Error.
+    ReadyDrape(const anamorph::DrapeSurfaces& surfaces, const anamorph::ParameterValues& values,
+               const anamorph::surface::Camera& camera, const anamorph::Size& texture,
+               const anamorph::surface::DrapeOptions& options) {
+        const auto machine = anamorph::drape_machine(values, options);
+        const anamorph::surface::SurfaceSum sum = surfaces.sum_of(values);
+        const auto tree = surfaces.tree_of(sum);
+        if (machine)
+            m_by_machine = anamorph::solved_by_blocks(
+                {*machine, sum, {tree, &tree->tree.surface()}, camera, texture, options, camera.screen()});
+        else
+            m_drape.emplace(tree, camera, texture, options);
+    }
+
+    /// Draws the pixels of a box. False where the texture cannot be read.
+    bool draw(const anamorph::Source& texture, const anamorph::Box& box, const anamorph::ImageView& view,
+              const anamorph::ParallelFor& parallel_for) const {
+        return m_drape ? m_drape->draw(&texture, box, view, parallel_for)
+                       : m_by_machine->draw({&texture}, box, view, parallel_for);
+    }
+    /// Adds what the machine says of its picture as fields, and returns the largest error.
+    double say(vtkDataObject* output) const {
+        if (m_drape) return m_drape->max_error();
+        double largest = 0;
+        for (const anamorph::Attribute& attribute : m_by_machine->reached(anamorph::serial_for))
+            if (attribute.name == "anamorph:max_error")
+                largest = std::get<double>(attribute.value);
+            else
+                add_field(attribute, output);
+        return largest;
+    }
+
+  private:
+    std::optional<anamorph::surface::Drape> m_drape;
+    std::unique_ptr<const anamorph::SolvedPicture> m_by_machine;
+};
 
 /// "height_smooth" as "HeightSmooth".
 std::string property_of(const std::string& row) {
@@ -149,7 +205,9 @@ std::string property_of(const std::string& row) {
 
 /// The same error, naming the property of the filter that the core's parameter comes from.
 Error of_property(const Error& error) {
-    const std::string& row = error.parameter();
+    std::string row = error.parameter();
+    // Of a machine's text as a whole: "machine: is no JSON".
+    if (row.empty() && std::string(error.what()).rfind("machine:", 0) == 0) row = "machine";
     if (row.empty() || std::isupper(static_cast<unsigned char>(row[0]))) return error;
     return Error(property_of(row) + std::string(error.what()).substr(row.size()));
 }
@@ -181,6 +239,8 @@ const std::vector<vtkAnamorphDrape::Number>& vtkAnamorphDrape::Numbers() {
                                             {"HeightScale", "height_scale", &Self::HeightScale},
                                             {"HeightSmooth", "height_smooth", &Self::HeightSmooth},
                                             {"Tolerance", "tol", &Self::Tolerance},
+                                            {"Block", "block", &Self::Block},
+                                            {"Overlap", "overlap", &Self::Overlap},
                                             {"Ambient", "ambient", &Self::Ambient},
                                             {"Diffuse", "diffuse", &Self::Diffuse},
                                             {"Specular", "specular", &Self::Specular},
@@ -285,6 +345,8 @@ anamorph::ParameterValues vtkAnamorphDrape::Values() const {
     values.set("surface", surface_word(this->Surface));
     values.set("filter", kFilters[static_cast<std::size_t>(this->Filter)]);
     values.set("shading", kShadings[static_cast<std::size_t>(this->Shading)]);
+    values.set("scheme", kSchemes[static_cast<std::size_t>(this->Scheme)]);
+    if (!this->Machine.empty()) values.set("machine", this->Machine);
     for (const Number& number : Numbers())
         if (number.value != &vtkAnamorphDrape::Radius || this->Radius != 0)
             values.set(number.row, this->*number.value);
@@ -350,7 +412,11 @@ const anamorph::DrapeSurfaces& vtkAnamorphDrape::SurfacesOf(const anamorph::Para
 anamorph::surface::DrapeOptions vtkAnamorphDrape::Options(const anamorph::ParameterValues& values,
                                                           int components) const {
     anamorph::surface::DrapeOptions options;
+    if (this->Scheme != HARDWARE)
+        options.scheme = anamorph::rows::chosen<anamorph::surface::DrapeScheme>(values, "scheme");
     options.tol = values.number("tol");
+    options.block = values.number("block");
+    options.overlap = values.number("overlap");
     options.filter = anamorph::rows::chosen<anamorph::Filter>(values, "filter");
     if (this->Style == TEXTURE_COORDINATES) options.output = anamorph::Output::stmap;
     if (this->Style == DEPTH) options.own = anamorph::surface::DrapeOutput::depth;
@@ -447,6 +513,20 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
     return anamorph_vtk::guarded(this, draw, {output});
 }
 
+/// The machine draws the bare picture. Throws anamorph::Error.
+void vtkAnamorphDrape::CheckMachine(const anamorph::surface::DrapeOptions& options) const {
+    if (this->Scheme != HARDWARE) return;
+    if (options.own != anamorph::surface::DrapeOutput::shared)
+        throw Error("Style", kStyles[this->Style],
+                    "must be color or texture coordinates with Scheme=hardware");
+    if (!options.background.empty()) {
+        std::string text;
+        for (const double value : this->Background)
+            text += (text.empty() ? "" : ",") + anamorph::shortest(value);
+        throw Error("Background", text, "must be 0,0,0,0 with Scheme=hardware");
+    }
+}
+
 /// Draws the pixels of an extent of the image.
 void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output) {
     if (extent[0] > extent[1] || extent[2] > extent[3]) return;
@@ -455,13 +535,14 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
                                             this->GetInputArrayToProcess(0, inputs), "the texture");
     const int channels = pixels.view().channels;
     const anamorph::ParameterValues values = this->Values();
+    const anamorph::surface::DrapeOptions options = this->Options(values, channels);
+    this->CheckMachine(options);
     anamorph_vtk::Execution execution(this);
     execution.progress(0.01);
     const anamorph::DrapeSurfaces& surfaces =
         this->SurfacesOf(values, inputs, static_cast<double>(pixels.size().width) / pixels.size().height);
     execution.progress(0.1);
-    const anamorph::surface::Drape drape(surfaces.tree_of(surfaces.sum_of(values)), this->CameraOf(screen),
-                                         pixels.size(), this->Options(values, channels));
+    const ReadyDrape drape(surfaces, values, this->CameraOf(screen), pixels.size(), options);
     execution.progress(0.3);
 
     const Drawn drawn = drawn_by(this->Style, pixels.type(), channels);
@@ -478,7 +559,7 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
     const anamorph::Pyramid source(base);
     const anamorph::Box box{extent[0], screen.height - 1 - extent[3], extent[1] + 1,
                             screen.height - extent[2]};
-    if (!drape.draw(&source, box,
+    if (!drape.draw(source, box,
                     turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)),
                                 anamorph_vtk::pixel_type(array, "the texture"), box.width(), box.height(),
                                 drawn.components),
@@ -486,8 +567,8 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
         throw Error("the texture cannot be read");
     if (this->Style != COLOR)
         say_as_vtk(this->Style, static_cast<float*>(array->GetVoidPointer(0)), array->GetNumberOfTuples());
-    if (!surfaces.missing().empty()) add_missing(surfaces.missing(), output);
-    this->MaxError = drape.max_error();
+    if (!surfaces.missing().empty()) add_field({"anamorph:missing", surfaces.missing()}, output);
+    this->MaxError = drape.say(output);
 }
 
 void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
@@ -510,6 +591,7 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
     print_text("FormulaY", this->FormulaY);
     print_text("FormulaZ", this->FormulaZ);
     print_text("FormulaDefinitions", this->FormulaDefinitions);
+    print_text("Machine", this->Machine);
     os << indent << "Frame: " << this->Frame << "\n";
     os << indent << "ViewSize: " << this->ViewSize[0] << " " << this->ViewSize[1] << "\n";
     print("CameraPosition", this->CameraPosition, 3);
@@ -518,6 +600,7 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n"
        << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n"
        << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n"
+       << indent << "Scheme: " << kSchemes[static_cast<std::size_t>(this->Scheme)] << "\n"
        << indent << "Filter: " << kFilters[static_cast<std::size_t>(this->Filter)] << "\n";
     print("Background", this->Background, 4);
     os << indent << "Shading: " << kShadings[static_cast<std::size_t>(this->Shading)] << "\n";

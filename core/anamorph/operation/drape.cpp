@@ -7,10 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "anamorph/machine/block_machine_map.h"
-#include "anamorph/machine/block_pixels.h"
-#include "anamorph/machine/block_schedule.h"
-#include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/block_drape.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/sequence.h"
@@ -210,27 +207,6 @@ surface::DrapeOptions options_of(const ParameterValues& values) {
     return options;
 }
 
-/// The machine of scheme hardware, which draws the bare picture. What is said of a machine is checked with
-/// the other schemes too.
-std::optional<machine::BlockMachine> machine_of(const ParameterValues& values,
-                                                const surface::DrapeOptions& options) {
-    const machine::BlockMachine machine = values.given("machine")
-                                              ? machine::block_machine_from_text(values.text("machine"))
-                                              : machine::BlockMachine{};
-    if (values.text("scheme") != "hardware") return {};
-    if (options.own != surface::DrapeOutput::shared)
-        throw Error("output", values.text("output"),
-                    "must be color, stmap, error or bound with scheme=hardware");
-    for (const char* name : {"background", "backdrop", "back"})
-        if (values.given(name))
-            throw Error(name, printable(values.text(name)), "must not be given with scheme=hardware");
-    if (options.filter != Filter::antialias && options.filter != Filter::bilinear &&
-        options.filter != Filter::nearest)
-        throw Error("filter", values.text("filter"),
-                    "must be antialias, bilinear or nearest with scheme=hardware");
-    return machine;
-}
-
 /// The colors of the backdrop go with those of the picture.
 void check_backdrop(const std::vector<SourceImage>& sources, const ParameterValues& values) {
     if (sources.size() < 2) return;
@@ -328,7 +304,7 @@ class DrapeRequest {
     }
     /// The machine of scheme hardware.
     std::optional<machine::BlockMachine> machine(const ParameterValues& values) const {
-        return machine_of(values, options(values));
+        return drape_machine(values, options(values));
     }
     const Size& source() const { return m_source; }
     surface::SurfaceSum sum(const ParameterValues& values) const { return m_surfaces->sum_of(values); }
@@ -387,17 +363,6 @@ class DrapeRequest {
 PixelKind pixels_of(const surface::DrapeOptions& options) {
     if (options.own == surface::DrapeOutput::shared) return pixels_of(options.output);
     return options.own == surface::DrapeOutput::normal ? PixelKind::vector : PixelKind::value;
-}
-
-/// Copies channels from one picture to another of the same size and type, at the pixels that `is_there` says.
-template <class IsThere>
-void copy_channels(const std::vector<int>& channels, const ImageView& from, const ImageView& to,
-                   const IsThere& is_there) {
-    const std::ptrdiff_t size = size_of(to.type);
-    for (int y = 0; y < to.height; ++y)
-        for (int x = 0; x < to.width; ++x)
-            for (const int c : channels)
-                if (is_there(x, y)) std::copy_n(from.at(x, y) + c * size, size, to.at(x, y) + c * size);
 }
 
 /// The drapes that a picture is made of.
@@ -508,76 +473,6 @@ class SolvedDrape final : public SolvedPicture {
     bool m_has_backdrop, m_has_back;
 };
 
-/// A drape of the first source by the machine of 1987.
-class SolvedByBlocks final : public SolvedPicture {
-  public:
-    SolvedByBlocks(const DrapeRequest& request, const ParameterValues& values, const Size& size)
-        : m_map(std::make_shared<machine::BlockMachineMap>(*request.machine(values), request.surface(values),
-                                                           request.camera(values, size), request.source())),
-          m_schedule(machine::schedule_of(*request.machine(values), m_map->frame().counts,
-                                          cost_of(request, values), request.source(), size)) {
-        const surface::DrapeOptions options = request.options(values);
-        const Chart flat(Projection::rectilinear, request.source().width, request.source().height);
-        if (options.output == Output::color && options.own == surface::DrapeOutput::shared)
-            m_pixels.emplace(m_map, *request.machine(values), Border(flat, options.wrap), options.filter);
-        if (m_pixels && options.lighting.shading != surface::DrapeShading::none)
-            m_pixels->light({*request.machine(values), *request.surface(values), request.camera(values, size),
-                             request.source(), m_map->frame(), options.lighting},
-                            options.alpha);
-        m_picture = picture_through(m_map, Border(flat, options.wrap), options.filter, options.output);
-        m_picture.data = request.data(values);
-        if (options.output == Output::error)
-            m_picture.value = [map = m_map.get()](double x, double y) {
-                return static_cast<float>(
-                    map->landing_error(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y))));
-            };
-    }
-
-    Attributes reached(const ParallelFor& parallel_for) const override {
-        const machine::BlockCounts& counts = m_schedule.counts;
-        return {{"anamorph:max_error", m_picture.reached(parallel_for).max_error},
-                {"anamorph:exact_fraction", 0.0},
-                {"anamorph:patches", static_cast<int>(counts.blocks)},
-                {"anamorph:saturated_pixels", static_cast<double>(counts.saturated)},
-                {"anamorph:cracks", static_cast<double>(counts.cracks)},
-                {"anamorph:misordered_pixels", static_cast<double>(counts.misordered)},
-                {"anamorph:frame_ms", m_schedule.frame_ms()},
-                {"anamorph:shown_ms", m_schedule.shown_ms()},
-                {"anamorph:bottleneck", m_schedule.bottleneck().name}};
-    }
-    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for) const override {
-        if (!m_pixels) return m_picture.draw(sources[0], box, view, parallel_for);
-        if (!m_pixels->draw(sources[0], box, view, parallel_for)) return false;
-        return m_picture.data.channels.empty() || draw_data(*sources[0], box, view, parallel_for);
-    }
-    std::unique_ptr<const SolvedPicture> of_moved() const override {
-        return moved_channels(m_picture.data).empty() ? nullptr : solved(m_picture.of_data());
-    }
-
-  private:
-    static machine::SurfaceCost cost_of(const DrapeRequest& request, const ParameterValues& values) {
-        machine::SurfaceCost cost = machine::cost_of(request.sum(values));
-        cost.light = machine::cost_of(request.options(values).lighting);
-        return cost;
-    }
-    /// Draws channels that hold no colour, which are read at the machine's addresses, but hold no numbers of its format.
-    bool draw_data(const Source& source, const Box& box, const ImageView& to,
-                   const ParallelFor& parallel_for) const {
-        const auto pixels = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
-        std::vector<std::byte> drawn(pixels * static_cast<std::size_t>(to.channels * size_of(to.type)));
-        const ImageView from = packed_view(drawn.data(), to.type, box.width(), box.height(), to.channels);
-        if (!m_picture.of_data().draw(&source, box, from, parallel_for)) return false;
-        copy_channels(m_picture.data.channels, from, to, [](int, int) { return true; });
-        return true;
-    }
-
-    std::shared_ptr<const machine::BlockMachineMap> m_map;
-    machine::MachineSchedule m_schedule;
-    std::optional<machine::BlockPixels> m_pixels;  ///< of colours
-    Picture m_picture;
-};
-
 class Drapes final : public Pictures {
   public:
     explicit Drapes(std::shared_ptr<const DrapeRequest> request) : m_request(std::move(request)) {}
@@ -608,7 +503,10 @@ class Drapes final : public Pictures {
         picture.adds_alpha = picture.pixels == PixelKind::color && m_request->adds_alpha(values);
         picture.solve = [request = m_request, values, adds_alpha = picture.adds_alpha,
                          size = *size]() -> std::unique_ptr<const SolvedPicture> {
-            if (request->machine(values)) return std::make_unique<SolvedByBlocks>(*request, values, size);
+            if (const auto machine = request->machine(values))
+                return solved_by_blocks({*machine, request->sum(values), request->surface(values),
+                                         request->camera(values, size), request->source(),
+                                         request->options(values), size, request->data(values)});
             return std::make_unique<SolvedDrape>(*request, parts_of(*request, values, size, adds_alpha));
         };
         return picture;

@@ -2,6 +2,8 @@
 // The steps that operations that draw a Picture share.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -21,5 +23,16 @@ Attributes said_of_pixels(double aspect);
 
 /// A picture as an operation hands it to a host: it says anamorph:max_error, anamorph:exact_fraction, and what it says itself.
 std::unique_ptr<const SolvedPicture> solved(Picture picture);
+
+/// Copies channels from one picture to another of the same size and type, at the pixels that `is_there` says.
+template <class IsThere>
+void copy_channels(const std::vector<int>& channels, const ImageView& from, const ImageView& to,
+                   const IsThere& is_there) {
+    const std::ptrdiff_t size = size_of(to.type);
+    for (int y = 0; y < to.height; ++y)
+        for (int x = 0; x < to.width; ++x)
+            for (const int c : channels)
+                if (is_there(x, y)) std::copy_n(from.at(x, y) + c * size, size, to.at(x, y) + c * size);
+}
 
 }  // namespace anamorph
