@@ -260,6 +260,16 @@ TEST(FigureScript, WhatIsWrongWithParameters) {
                 ElementsAre(HasSubstr("found \"limb\", expected a number or a name")));
 }
 
+TEST(FigureScript, ASubroutineBegunWithinAnotherHasNoneOfItsParameters) {
+    const Script script =
+        parse(kFigure +
+                  "subroutine outer 2 limb turn\nsubroutine inner\nlinear 0 2 bendby limb j a turn x\n"
+                  "endsub inner\nendsub outer\nstop",
+              Dialect::strict);
+    EXPECT_FALSE(script.ok());
+    EXPECT_THAT(messages(script), testing::Contains(HasSubstr("found \"limb\"")));
+}
+
 // --- Libraries
 
 TEST(FigureScript, LibrariesAndIncludes) {

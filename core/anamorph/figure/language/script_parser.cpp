@@ -424,6 +424,8 @@ void ScriptParser::begin_subroutine() {
         return;
     }
     m_subroutine = index;
+    // One that is begun within another knows nothing of that one's.
+    m_parameters.clear();
     if (strict() && looks_like_number(peek().text)) parameters();
 }
 
