@@ -95,12 +95,12 @@ struct Scene {
     std::shared_ptr<const BlockMachineMap> map;
     std::shared_ptr<const DrapedSurface> surface;
 
-    explicit Scene(const BlockMachine& machine)
+    explicit Scene(const BlockMachine& machine, const std::string& name = "waves",
+                   const SurfaceShape& shape = {})
         : camera(pose(), glm::dmat3(1.0), glm::dvec3(0.0), {kSide, kSide}) {
         const auto& names = surface_names();
         surface = make_surface(
-            static_cast<std::size_t>(std::find(names.begin(), names.end(), "waves") - names.begin()),
-            SurfaceShape{});
+            static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()), shape);
         map = std::make_shared<BlockMachineMap>(machine, surface, camera, Size{kSide, kSide});
     }
     static CameraPose pose() {
@@ -198,6 +198,34 @@ TEST(BlockShading, ComesToTheSurfaceWithSmallerBlocks) {
         }
         EXPECT_GT(mean[0], 0.001);
         EXPECT_LT(mean[1], mean[0] / 8) << mean[0];
+    }
+}
+
+/// A whole ball, light from the camera: at its poles there are no normals, and beyond its silhouette they point away.
+TEST(BlockShading, HoldsAtPolesAndSilhouettes) {
+    for (const DrapeShading shading : {DrapeShading::gouraud, DrapeShading::phong}) {
+        BlockMachine machine;
+        machine.block = 2;
+        machine.light_bits = 20;
+        SurfaceShape ball;
+        ball.angle = 360;
+        const Scene scene(machine, "sphere", ball);
+        DrapeLighting lighting;
+        lighting.shading = shading;
+        const std::vector<float> drawn = scene.draw(machine, lighting, {1}, -1);
+        double worst = 0;
+        int seen = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const double px = (x + 0.5 - kSide / 2) * 1.1 / kSide,
+                             py = (y + 0.5 - kSide / 2) * 1.1 / kSide, square = 0.25 - px * px - py * py;
+                if (!(square > 1e-4)) continue;
+                const double wanted = lighting.ambient + lighting.diffuse * std::sqrt(square) / 0.5;
+                worst = std::max(worst, std::fabs(drawn[static_cast<std::size_t>(y * kSide + x)] - wanted));
+                ++seen;
+            }
+        EXPECT_GT(seen, 2500);
+        EXPECT_LT(worst, 0.07);
     }
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 // What of a pixel lies beyond an edge by no more than this does not count, a 512th of its area: pictures that end together do so but for
 // rounding, and for what bounds over boxes are too wide.
-constexpr double kHair = 0x1p-9;
+constexpr double kNegligible = 0x1p-9;
 
 double middle_of(const Interval& a) {
     return 0.5 * (a.lo + a.hi);
@@ -68,7 +68,7 @@ bool ChainMap::misses(const Point<Interval>& box) const {
 bool ChainMap::meets_edge(const Point<Interval>& box) const {
     const Box& frame = m_pieces.frame();
     const auto is_within = [](const Interval& a, int from, int to) {
-        return a.lo >= from - kHair && a.hi <= to + kHair;
+        return a.lo >= from - kNegligible && a.hi <= to + kNegligible;
     };
     return !(m_outer->source_period() > 0 || is_within(box.x, frame.x0, frame.x1)) ||
            !(m_middle.has_poles || is_within(box.y, frame.y0, frame.y1));

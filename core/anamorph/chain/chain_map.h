@@ -153,7 +153,7 @@ class ChainMap {
     int piece_at(double x, double y) const { return m_pieces.holding(Interval(x), Interval(y)); }
     /// Is all of a box outside of the picture in the middle, which may close across?
     bool misses(const Point<Interval>& box) const;
-    /// Does a box reach beyond an edge of the picture in the middle by more than a hair?
+    /// Does a box reach beyond an edge of the picture in the middle by more than is negligible?
     bool meets_edge(const Point<Interval>& box) const;
     /// Do target points of a box, whose points in the middle lie in `points`?
     bool crosses_edge(const Interval& x, const Interval& y, const Point<Interval>& points, int piece,

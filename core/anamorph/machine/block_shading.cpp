@@ -30,19 +30,19 @@ BlockShading::BlockShading(const BlockMachine& machine, const surface::DrapedSur
             if (glm::dot(at.normal, centre.normal) < 0) at.normal = -at.normal;
             return numbers_at(at);
         };
-        const std::vector<double> here = numbers_at(centre), left = beside(c.x - side_u, c.y),
-                                  right = beside(c.x + side_u, c.y), above = beside(c.x, c.y - side_v),
-                                  below = beside(c.x, c.y + side_v);
+        const auto here = numbers_at(centre), left = beside(c.x - side_u, c.y),
+                   right = beside(c.x + side_u, c.y), above = beside(c.x, c.y - side_v),
+                   below = beside(c.x, c.y + side_v);
         const auto gain = [&](double before, double after, double side) {
             return rounded(rounded(rounded(after) - rounded(before)) / rounded(2 * side));
         };
-        for (std::size_t k = 0; k < here.size(); ++k)
+        for (std::size_t k = 0; k < numbers(); ++k)
             m_numbers.push_back(
                 {rounded(here[k]), gain(left[k], right[k], side_u), gain(above[k], below[k], side_v)});
     }
 }
 
-std::vector<double> BlockShading::numbers_at(const LitPoint& point) const {
+std::array<double, BlockShading::kMostNumbers> BlockShading::numbers_at(const LitPoint& point) const {
     if (m_lighting.shading == DrapeShading::gouraud) {
         const Light light = light_at(m_lighting, point);
         return {double(light.share), double(light.highlight)};

@@ -3,6 +3,7 @@
 // in each block". How it is built in, its numbers and what it costs are ours: the paper has no more than that sentence.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "anamorph/machine/block_machine.h"
@@ -33,8 +34,11 @@ class BlockShading {
     };
 
     /// How many numbers a block has: two of intensities, or six of a normal and a direction.
-    std::size_t numbers() const { return m_lighting.shading == surface::DrapeShading::gouraud ? 2 : 6; }
-    std::vector<double> numbers_at(const surface::LitPoint& point) const;
+    std::size_t numbers() const {
+        return m_lighting.shading == surface::DrapeShading::gouraud ? 2 : kMostNumbers;
+    }
+    static constexpr std::size_t kMostNumbers = 6;
+    std::array<double, kMostNumbers> numbers_at(const surface::LitPoint& point) const;
     double value(std::int32_t block, std::size_t number, const Point<double>& address) const;
 
     surface::DrapeLighting m_lighting;

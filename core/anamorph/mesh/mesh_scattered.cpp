@@ -13,7 +13,7 @@
 #include "anamorph/mesh/cubic_rows.h"
 #include "anamorph/mesh/folds.h"
 #include "anamorph/mesh/hermite.h"
-#include "anamorph/mesh/window_cubic.h"
+#include "anamorph/mesh/window_map.h"
 #include "anamorph/plan/block_writer.h"
 #include "anamorph/plan/map_link.h"
 
@@ -350,9 +350,7 @@ class TriangleMap {
         return cubic;
     }
     Cover cover(const Interval& x, const Interval& y, int, const Local& local, bool) const {
-        if (!local.holds(x, y)) return Cover::mixed;
-        const Point<Interval> p = local(x, y);
-        return magnitude(p.x) < kFarthest && magnitude(p.y) < kFarthest ? Cover::inside : Cover::mixed;
+        return cover_by(local, x, y);
     }
     template <class T>
     Point<T> operator()(const T& x, const T& y, const Local& local) const {

@@ -54,6 +54,12 @@ WindowCubic cubic_about(const Box& window) {
     return cubic;
 }
 
+Cover cover_by(const WindowCubic& cubic, const Interval& x, const Interval& y) {
+    if (!cubic.holds(x, y)) return Cover::mixed;
+    const Point<Interval> p = cubic(x, y);
+    return magnitude(p.x) < kFarthest && magnitude(p.y) < kFarthest ? Cover::inside : Cover::mixed;
+}
+
 bool WindowFit::fits(const WindowSource& source, const Box& window, WindowCubic& cubic) const {
     bool all = true;
     fit.fit(
@@ -164,10 +170,7 @@ WindowMap::Local WindowMap::local_around(double x, double y, int) const {
 }
 
 Cover WindowMap::cover(const Interval& x, const Interval& y, int, const Local& local, bool) const {
-    if (m_source->misses(x, y)) return Cover::outside;
-    if (!local.holds(x, y)) return Cover::mixed;
-    const Point<Interval> p = local(x, y);
-    return magnitude(p.x) < kFarthest && magnitude(p.y) < kFarthest ? Cover::inside : Cover::mixed;
+    return m_source->misses(x, y) ? Cover::outside : cover_by(local, x, y);
 }
 
 }  // namespace anamorph

@@ -53,6 +53,8 @@ struct WindowFit {
 const WindowFit& fit_of(const Box& window);
 /// A cubic of a window that says nothing yet.
 WindowCubic cubic_about(const Box& window);
+/// FormulaMap::cover() of a map that is read as a cubic: mixed where that does not stand for it in all of a box.
+Cover cover_by(const WindowCubic& cubic, const Interval& x, const Interval& y);
 
 class WindowMap {
   public:
