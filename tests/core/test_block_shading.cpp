@@ -229,6 +229,19 @@ TEST(BlockShading, HoldsAtPolesAndSilhouettes) {
     }
 }
 
+/// What goes on linearly beyond where light ends would be less than none.
+TEST(BlockShading, LightIsNotNegative) {
+    BlockMachine machine;
+    const Scene scene(machine);
+    DrapeLighting lighting;
+    lighting.shading = DrapeShading::gouraud;
+    lighting.ambient = 0;
+    lighting.lights = {{1, 0, 0}};
+    const std::vector<float> drawn = scene.draw(machine, lighting, {1}, -1);
+    EXPECT_EQ(*std::min_element(drawn.begin(), drawn.end()), 0);
+    EXPECT_GT(*std::max_element(drawn.begin(), drawn.end()), 0.3f);
+}
+
 /// Colours that are multiplied by alpha shine as far as they are there, and alpha stays.
 TEST(BlockShading, AlphaStays) {
     BlockMachine machine;
