@@ -201,11 +201,11 @@ TEST(BlockShading, ComesToTheSurfaceWithSmallerBlocks) {
     }
 }
 
-/// A whole ball, light from the camera: at its poles there are no normals, and beyond its silhouette they point away.
-TEST(BlockShading, HoldsAtPolesAndSilhouettes) {
+/// A whole ball, light from the camera: normals beyond its silhouette, which point away, are turned round to those before it.
+TEST(BlockShading, GoesOnBeyondSilhouettes) {
     for (const DrapeShading shading : {DrapeShading::gouraud, DrapeShading::phong}) {
         BlockMachine machine;
-        machine.block = 2;
+        machine.block = 4;
         machine.light_bits = 20;
         SurfaceShape ball;
         ball.angle = 360;
@@ -225,7 +225,7 @@ TEST(BlockShading, HoldsAtPolesAndSilhouettes) {
                 ++seen;
             }
         EXPECT_GT(seen, 2500);
-        EXPECT_LT(worst, 0.07);
+        EXPECT_LT(worst, 0.09);
     }
 }
 

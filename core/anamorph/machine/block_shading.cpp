@@ -26,7 +26,6 @@ BlockShading::BlockShading(const BlockMachine& machine, const surface::DrapedSur
         const LitPoint centre = lit(c.x, c.y);
         const auto beside = [&](double u, double v) {
             LitPoint at = lit(u, v);
-            if (at.normal == glm::dvec3(0.0)) at.normal = centre.normal;
             if (glm::dot(at.normal, centre.normal) < 0) at.normal = -at.normal;
             return numbers_at(at);
         };

@@ -15,8 +15,8 @@ namespace anamorph::machine {
 /// The light of a frame's blocks. Processors find what light makes of the centre of a block and of its four neighbours (Gouraud), or
 /// normals and directions of view there (Phong), and by central differences what a texel gains, as they do with points
 /// (2.4 to 2.7), each number rounded to BlockMachine::coordinates. The pixel processor goes on from the block's centre by these, and
-/// rounds what light makes of a pixel to multiples of 2^-light_bits, 0 at least. Where a neighbour has no normal, as at a pole,
-/// it is taken to be as the centre; and a normal that points away from the centre's is turned round.
+/// rounds what light makes of a pixel to multiples of 2^-light_bits, 0 at least. A neighbour's normal that points
+/// away from the centre's is turned round.
 class BlockShading {
   public:
     /// `frame`: of the same machine, surface, camera and picture. Keeps none of them. `lighting`: some shading.
