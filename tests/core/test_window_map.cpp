@@ -22,24 +22,27 @@ Point<double> bent(double s, double t, double bend) {
             0.02 + 0.93 * t + bend * (0.03 * std::sin(6 * s) - 0.05 * s * t)};
 }
 
-MeshWindows mesh_windows(test::Random& random, int cells, double bend, double noise) {
+MeshWindows mesh_windows(test::Random& random, int columns, int rows, double bend, double noise) {
     ControlMesh mesh;
-    mesh.columns = mesh.rows = cells;
-    for (int j = 0; j <= cells; ++j)
-        for (int i = 0; i <= cells; ++i) {
-            const Point<double> p = bent(double(i) / cells, double(j) / cells, bend);
+    mesh.columns = columns, mesh.rows = rows;
+    for (int j = 0; j <= rows; ++j)
+        for (int i = 0; i <= columns; ++i) {
+            const Point<double> p = bent(double(i) / columns, double(j) / rows, bend);
             mesh.vertices.push_back({p.x * kSource.width + random.between(-noise, noise),
                                      p.y * kSource.height + random.between(-noise, noise)});
         }
     return MeshWindows(std::make_shared<const Mesh>(mesh, kTarget, kSource, 1));
 }
-StWindows st_windows(test::Random& random, double bend, double noise) {
+/// `stripes`: how far every other two columns are moved, in pixels.
+StWindows st_windows(test::Random& random, double bend, double noise_x, double noise_y, double stripes = 0) {
     StSamples samples;
     for (int j = 0; j < kTarget.height; ++j)
         for (int i = 0; i < kTarget.width; ++i) {
             const Point<double> p = bent((i + 0.5) / kTarget.width, (j + 0.5) / kTarget.height, bend);
-            samples.uv.push_back(static_cast<float>(p.x + random.between(-noise, noise) / kSource.width));
-            samples.uv.push_back(static_cast<float>(p.y + random.between(-noise, noise) / kSource.height));
+            samples.uv.push_back(static_cast<float>(
+                p.x + (random.between(-noise_x, noise_x) + (i / 2 % 2) * stripes) / kSource.width));
+            samples.uv.push_back(
+                static_cast<float>(p.y + random.between(-noise_y, noise_y) / kSource.height));
         }
     samples.most = 2;
     return StWindows(
@@ -60,9 +63,11 @@ struct Sums {
     double off = 0, said = 0;
     int windows = 0;
 };
-void check_windows(const WindowSource& source, test::Random& random, Sums& sums) {
+/// `grid`: what their corners are multiples of.
+void check_windows(const WindowSource& source, test::Random& random, Sums& sums, int grid = 1) {
     for (const int side : {20, 36, 68, 132, 260}) {
-        const int x = random.whole(0, kTarget.width - side), y = random.whole(0, kTarget.height - side);
+        const int x = grid * random.whole(0, (kTarget.width - side) / grid),
+                  y = grid * random.whole(0, (kTarget.height - side) / grid);
         const WindowCubic cubic = source.cubic_over({x, y, x + side, y + side}, 1e6);
         if (!cubic.serves()) continue;
         double worst = 0;
@@ -108,11 +113,14 @@ TEST(WindowMap, CubicsOfMeshesAreOffByNoMoreThanTheySay) {
     Sums sums;
     for (const int cells : {5, 12, 40})
         for (const double noise : {0.0, 0.02, 3.0}) {
-            const MeshWindows windows = mesh_windows(random, cells, 1, noise);
+            const MeshWindows windows = mesh_windows(random, cells, cells, 1, noise);
             check_windows(windows, random, sums);
             check_boxes(windows, random);
         }
-    EXPECT_GT(sums.windows, 40);
+    // Windows of whole cells alone.
+    for (int n = 0; n < 4; ++n)
+        check_windows(mesh_windows(random, kTarget.width / 4, kTarget.height / 4, 1, 0.1), random, sums, 4);
+    EXPECT_GT(sums.windows, 60);
     EXPECT_LT(sums.said, 4 * sums.off);
 }
 
@@ -121,11 +129,13 @@ TEST(WindowMap, CubicsOfStMapsAreOffByNoMoreThanTheySay) {
     test::Random random(kSeed);
     Sums sums;
     for (const double bend : {0.2, 1.0})
-        for (const double noise : {0.0, 0.01, 1.0}) {
-            const StWindows windows = st_windows(random, bend, noise);
+        for (const auto& [noise_x, noise_y] : {std::pair{0.0, 0.0}, {0.01, 0.01}, {1.0, 0.0}, {0.0, 1.0}}) {
+            const StWindows windows = st_windows(random, bend, noise_x, noise_y);
             check_windows(windows, random, sums);
             check_boxes(windows, random);
         }
+    // Between two that are moved alike the map goes beyond both.
+    check_boxes(st_windows(random, 0, 0, 0, 5), random);
     EXPECT_GT(sums.windows, 25);
     EXPECT_LT(sums.said, 4 * sums.off);
 }
