@@ -269,5 +269,20 @@ TEST(Plan, RefusesATolerance) {
     }
 }
 
+// Where cells of a table hold the tolerance they serve, and where none can, all is exact in whole blocks.
+TEST(Plan, TablesServeWhereTheyCan) {
+    const Chart sphere(Projection::equirectangular, 2048, 1024), view(Projection::rectilinear, 512, 512, 90);
+    const auto exact_fraction = [&](double tol) {
+        PlanOptions options;
+        options.scheme = Scheme::residual;
+        options.tol = tol;
+        return PanoramaPlan(Panorama(sphere, view, {30, 20, 10}), options).reached(serial_for).exact_fraction;
+    };
+    EXPECT_EQ(exact_fraction(0.2), 0);
+    EXPECT_LT(exact_fraction(0.1), 0.01);
+    EXPECT_LT(exact_fraction(0.05), 0.9);
+    EXPECT_EQ(exact_fraction(1e-6), 1);
+}
+
 }  // namespace
 }  // namespace anamorph
