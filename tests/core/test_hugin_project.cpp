@@ -86,6 +86,10 @@ TEST(HuginProject, ReadsPanoramaImagesAndLinks) {
     EXPECT_EQ(project.not_applied, "");
 }
 
+TEST(HuginProject, ANameIsNoLink) {
+    EXPECT_EQ(parsed("i w3 h2 f0 v90 n\"a\"\ni w3 h2 f0 v90 n\"=0\"").images[1].file, "=0");
+}
+
 TEST(HuginProject, KnowsTheProjectionsOfPanoTools) {
     const auto of_image = [](int f) {
         return parsed("i w3 h2 f" + std::to_string(f) + " v90 n\"a\"").images.at(0).projection;

@@ -292,7 +292,8 @@ class Images {
 
     HuginImage image(std::size_t i) const {
         HuginImage image;
-        image.file = needed(i, "n");
+        // A name is a name, also one that begins as links do.
+        image.file = value_of_row(m_rows[i], "n");
         if (image.file.empty()) throw Error("n\"\": must be the name of an image");
         image.size = {checked_whole("w", needed(i, "w"), 1, kMaxSide),
                       checked_whole("h", needed(i, "h"), 1, kMaxSide)};
