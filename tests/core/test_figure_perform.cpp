@@ -130,6 +130,127 @@ TEST(FigureVariables, HoldNames) {
                 HasSubstr("own.n:5:14: the variable v holds an axis, but must hold a joint"));
 }
 
+// --- Parameters of subroutines
+
+const std::string kTwo =
+    "figure f 2 a b\nellipsoid a 10 40 20\nellipsoid b 10 40 20\njoint j a 0 40 0 b 0 -40 0\nvariables 3 u v "
+    "w\n";
+
+/// A script whose subroutine has parameters does what one does in which the values are written.
+TEST(FigureParameters, StandForWhatIsHandedOver) {
+    const auto with = [](const std::string& part, const std::string& at, const std::string& angle,
+                         const std::string& way, const std::string& last) {
+        return kTwo + "repeat 0 1 set u 30\n" + "linear 1 " + last + " bendby " + part + " " + at + " a " +
+               angle + " " + way + "\ncubic 2 " + last + " moveby f world 3 " + angle + " 0\nstop";
+    };
+    const std::string called =
+        kTwo +
+        "repeat 0 1 set u 30\ncall 1 9 wave 6 b j 20 x 9 f\n"
+        "subroutine wave 6 part at angle way last whole\nlinear 1 last bendby part at a angle way\n"
+        "cubic 2 last moveby whole world 3 angle 0\nendsub wave\nstop";
+    Performance ours = perform(called, Dialect::strict),
+                wanted = perform(with("b", "j", "20", "x", "9"), Dialect::strict);
+    ASSERT_EQ(wanted.frame_count(), 9);
+    ASSERT_EQ(ours.frame_count(), 9);
+    for (int f = 1; f <= 9; ++f)
+        for (const char* name : {"a", "b"}) {
+            SCOPED_TRACE(numbered(name, f));
+            const Body is = body_named(ours.frame(f), name), body = body_named(wanted.frame(f), name);
+            EXPECT_EQ(is.shape.center, body.shape.center);
+            EXPECT_EQ(is.shape.rotation, body.shape.rotation);
+        }
+}
+
+TEST(FigureParameters, AreHandedOnAndSetVariables) {
+    Performance p = perform(
+        kTwo +
+            "repeat 0 1 set u 5\ncall 0 3 outer 2 u f\nrepeat 1 2 moveby f world u 0 0\n"
+            "subroutine outer 2 n who\nrepeat 0 3 call inner 3 n who 2\nendsub outer\n"
+            "subroutine inner 3 m it by\nrepeat 0 1 multiply m m by\nrepeat 0 1 moveby it world 0 m 0\n"
+            "endsub inner\nstop",
+        Dialect::strict);
+    // u is 10, 20, 40 in frames 1, 2, 3, and so far it rises.
+    expect_near(body_named(p.frame(1), "a").shape.center, {0, 10, 0}, 1e-12);
+    expect_near(body_named(p.frame(2), "a").shape.center, {20, 30, 0}, 1e-12);
+    expect_near(body_named(p.frame(3), "a").shape.center, {20, 70, 0}, 1e-12);
+}
+
+TEST(FigureParameters, NamePicturesJointsAndFiguresThatAreMade) {
+    Performance p = perform(
+        "figure f 1 a\nellipsoid a 10 10 10\nfigure g 1 b\nellipsoid b 10 10 10\n"
+        "call 0 1 dress 4 a cloth grip loose\n"
+        "subroutine dress 4 it with new part\nrepeat 0 1 texture it with 1 2\n"
+        "repeat 0 1 attach it new b 0 0 0\nrepeat 0 1 detach b new part\nrepeat 0 1 moveby part world 7 0 0\n"
+        "endsub dress\nstop",
+        Dialect::strict);
+    const FigureFrame frame = p.frame(1);
+    EXPECT_EQ(body_named(frame, "a").texture, "cloth");
+    expect_near(body_named(frame, "b").shape.center, {7, 0, 0}, 1e-12);
+}
+
+TEST(FigureParameters, NamePicturesThatAreHandedOn) {
+    Performance p = perform(
+        "figure f 1 a\nellipsoid a 10 10 10\ncall 0 1 first 2 cloth a\n"
+        "subroutine first 2 p q\nrepeat 0 1 call second 2 q p\nendsub first\n"
+        "subroutine second 2 p q\nrepeat 0 1 texture p q 1 2\nendsub second\nstop",
+        Dialect::strict);
+    EXPECT_EQ(body_named(p.frame(1), "a").texture, "cloth");
+}
+
+TEST(FigureParameters, OfSubroutinesThatAreHandedOverMayCallThemselves) {
+    const auto failure = [](const std::string& inner) {
+        return error_of([&] {
+            perform(kTwo + "call 0 1 wave 2 wave 3\nsubroutine wave 2 again n\nrepeat 0 1 " + inner +
+                        "\nendsub wave\nstop",
+                    Dialect::strict)
+                .frame(1);
+        });
+    };
+    EXPECT_EQ(failure("moveby f world n 0 0"), "no error");
+    EXPECT_THAT(failure("call again 2 again n"), HasSubstr("subroutines call each other without end"));
+    EXPECT_THAT(failure("call again 1 n"), HasSubstr("hands over 1 values, but the parameters of"));
+}
+
+TEST(FigureParameters, ASubroutineInAVariableIsCheckedWhenItIsCalled) {
+    const auto failure = [](const std::string& values) {
+        return error_of([&] {
+            perform(kTwo + "repeat 0 1 set u wave\nrepeat 0 1 call u " + values +
+                        "\nsubroutine wave 1 who\nrepeat 0 1 moveby who world 1 0 0\nendsub wave\nstop",
+                    Dialect::strict)
+                .frame(1);
+        });
+    };
+    EXPECT_EQ(failure("1 f"), "no error");
+    EXPECT_THAT(failure(""),
+                HasSubstr("own.n:7:12: call hands over 0 values, but the parameters of \"wave\" are 1"));
+    EXPECT_THAT(failure("1 8"), HasSubstr("own.n:9:12: call hands over a number, but the parameter \"who\""));
+    EXPECT_THAT(failure("1 j"), HasSubstr("hands over a joint"));
+}
+
+TEST(FigureDebug, TellsEachActionOnce) {
+    std::vector<std::string> lines;
+    PerformanceOptions options;
+    options.message = [&](const std::string& line) { lines.push_back(line); };
+    const std::string script =
+        kTwo +
+        "linear 0 2 moveby f a 8 0 0\ncall 1 2 s\nsubroutine s\nrepeat 0 1 set u b\nrepeat 0 1 "
+        "spinby f u world 1 x\nendsub s\n";
+    Performance p(program_of(script + "debug 0\nstop"), options);
+    p.frame(2);
+    const std::vector<std::string> said = lines;
+    EXPECT_THAT(said,
+                ElementsAre("frame 1, own.n:6:12: linear 1/2 moveby f a 8 0 0",
+                            "frame 2, own.n:6:12: linear 2/2 moveby f a 8 0 0",
+                            "frame 2, own.n:7:6: call 1/1 s", "frame 2, own.n:9:12: s: repeat 1/1 set u=-1 b",
+                            "frame 2, own.n:10:12: s: repeat 1/1 spinby f u=b world 1 x"));
+    p.frame(1);
+    p.frame(2);
+    EXPECT_EQ(lines, said);
+    lines.clear();
+    Performance(program_of(script + "debug 1\nstop"), options).frame(2);
+    EXPECT_TRUE(lines.empty());
+}
+
 TEST(FigureVariables, Calculate) {
     std::vector<std::string> lines;
     PerformanceOptions options;

@@ -195,7 +195,81 @@ TEST(FigureScript, SpeedViewDebugLimit) {
         parse_program(kFigure + "speed -4\nview 3 9\ndebug 0\nlimit j -1 1 -2 2 -3 3\nstop", "own.n");
     EXPECT_EQ(p.speed, -4);
     EXPECT_EQ(p.view.value(), (std::array<int, 2>{3, 9}));
+    EXPECT_TRUE(p.trace);
+    EXPECT_FALSE(parse_program("debug 1\nstop", "own.n").trace);
+    EXPECT_TRUE(parse_program("debug 1\ndebug -3\nstop", "own.n").trace);
     EXPECT_EQ(p.joints[0].limit.value(), (std::array<double, 6>{-1, 1, -2, 2, -3, 3}));
+}
+
+// --- Parameters of subroutines
+
+TEST(FigureScript, ParametersAreReadWhereStrict) {
+    const std::string text =
+        kFigure +
+        "call 0 4 wave 2 b v\nsubroutine wave 2 limb turn\nlinear 0 4 bendby limb j a turn x\n"
+        "repeat 0 1 set u turn\nendsub wave\nsubroutine none 0\nendsub none\nstop";
+    const Script script = parse(text, Dialect::strict);
+    ASSERT_TRUE(script.ok()) << testing::PrintToString(messages(script));
+    const Movement& call = script.program.subroutines[0].movements.at(0);
+    ASSERT_EQ(call.operands.size(), 3u);
+    EXPECT_EQ(call.operands[1], (Operand{OperandKind::ellipsoid, 0, 2}));
+    EXPECT_EQ(call.operands[2], (Operand{OperandKind::variable, 0, 2}));
+    const Subroutine& wave = script.program.subroutines.at(1);
+    EXPECT_THAT(wave.parameters, ElementsAre("limb", "turn"));
+    EXPECT_EQ(wave.movements.at(0).operands[0], (Operand{OperandKind::parameter, 0, 0}));
+    EXPECT_EQ(wave.movements.at(1).operands[1], (Operand{OperandKind::parameter, 0, 1}));
+    // The original has none: what follows the name is passed over, and the names mean nothing.
+    EXPECT_THAT(messages(parse(text)), testing::Contains(HasSubstr("7:11: error: found \"limb\"")).Times(0));
+    EXPECT_FALSE(parse(text).ok());
+}
+
+TEST(FigureScript, WhatIsWrongWithParameters) {
+    const auto error = [](const std::string& call, const std::string& sub) {
+        const Script script =
+            parse(kFigure + call + "\nsubroutine wave " + sub + "\nendsub wave\nstop", Dialect::strict);
+        return script.diagnostics.empty() ? std::string("none") : script.diagnostics[0].text();
+    };
+    const std::string bends = "1 limb\nlinear 0 4 bendby limb j a 90 x";
+    EXPECT_EQ(error("call 0 4 wave 1 b", bends), "none");
+    EXPECT_EQ(error("repeat 0 4 call wave 1 b", bends), "none");
+    EXPECT_THAT(error("call 0 4 wave", bends),
+                AllOf(HasSubstr("own.n:6:6: error"),
+                      HasSubstr("call hands over 0 values, but the parameters of \"wave\" are 1")));
+    EXPECT_THAT(error("call 0 4 wave 2 b b", bends), HasSubstr("hands over 2 values"));
+    EXPECT_THAT(
+        error("call 0 4 wave 1 90", bends),
+        HasSubstr(
+            "call hands over a number, but the parameter \"limb\" of \"wave\" stands for an ellipsoid"));
+    EXPECT_THAT(error("call 0 4 wave 1 j", bends), HasSubstr("hands over a joint"));
+    EXPECT_THAT(error("call 0 4 wave 1 bb", bends), HasSubstr("found \"bb\", expected a number or a name"));
+    EXPECT_THAT(error("call 0 4 wave b", bends), HasSubstr("found \"b\", expected a declaration"));
+    EXPECT_THAT(error("call 0 4 wave -1", bends), HasSubstr("expected the number of values handed over"));
+    EXPECT_THAT(error("call 0 4 wave 2000000", bends),
+                HasSubstr("expected the number of values handed over"));
+    EXPECT_THAT(error("call 0 4 wave 1 5", "1 n\nrepeat 0 1 set n 3"),
+                HasSubstr("hands over a number, but the parameter \"n\" of \"wave\" stands for a variable"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1 limb\nlinear 0 limb moveby f a 1 0 0"),
+                HasSubstr("hands over an ellipsoid, but the parameter \"limb\""));
+    EXPECT_THAT(error("call 0 4 wave 2 b b", "2 limb limb"), HasSubstr("\"limb\" is declared twice"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1 a"), HasSubstr("\"a\" is the name of an ellipsoid as well"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1.5 limb"), HasSubstr("expected the number of parameters"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "3 limb"), HasSubstr("expected a name for a parameter"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1 late\nvariables 1 late"),
+                HasSubstr("7:19: error: \"late\" is the name of a variable as well"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1 bendby"), HasSubstr("expected a name for a parameter"));
+    EXPECT_THAT(error("call 0 4 wave 1 nan", bends), HasSubstr("found \"nan\""));
+    // What is handed on is checked where it comes from.
+    EXPECT_THAT(
+        error("call 0 4 wave 1 90\nsubroutine on 1 it\nlinear 0 4 bendby it j a 90 x\nendsub on",
+              "1 limb\ncall 0 4 on 1 limb"),
+        HasSubstr("hands over a number, but the parameter \"limb\" of \"wave\" stands for an ellipsoid"));
+    // One inside of another has parameters of its own.
+    EXPECT_THAT(error("call 0 4 wave 3 b b b", "3 k l m\nsubroutine inner 1 n\nrepeat 0 1 set u m"),
+                HasSubstr("begins inside of another"));
+    // They are known in their subroutine alone.
+    EXPECT_THAT(messages(parse(kFigure + "subroutine s 1 limb\nendsub s\nrepeat 0 1 set u limb\nstop",
+                               Dialect::strict)),
+                ElementsAre(HasSubstr("found \"limb\", expected a number or a name")));
 }
 
 // --- Libraries

@@ -21,7 +21,9 @@ constexpr Said kSaid[] = {
     {"joint", "joins two ellipsoids in a point, given from the centre of each as they stand at rest", ""},
     {"accelerate", "the action works in frames after the first up to the second, faster and faster",
      "accelerate 0 10 moveby doll trunk 100 0 0"},
-    {"subroutine", "begins movements that calls perform, up to endsub; frames count from its own first",
+    {"subroutine",
+     "begins movements that calls perform, up to endsub; frames count from its own first. In the strict "
+     "dialect it may have parameters: how many, and their names, which stand for what a call hands over",
      "call 0 5 wave\nsubroutine wave\nlinear 0 5 bendby arm shoulder trunk 90 z\nendsub wave"},
     {"balance",
      "turns the part of the figure on the ellipsoid's side of the joint, about an axis of the second, until "
@@ -64,7 +66,10 @@ constexpr Said kSaid[] = {
     {"set", "sets the variable to a number, or to the name of anything", "repeat 0 1 set u 90"},
     {"bendto", "turns the same part until the ellipsoid has the angles (a1 a2 a3) seen from the second",
      "linear 0 10 bendto arm shoulder trunk 0 0 90"},
-    {"debug", "is read and does nothing", "debug 0"},
+    {"debug",
+     "with a number of 0 or less every action is told as it is performed: frame, place in the script, step "
+     "of steps, operands",
+     "debug 0"},
     {"repeat", "the action works in full in every frame after the first up to the second",
      "repeat 0 10 moveby doll trunk 10 0 0"},
     {"quadratic", "the action works faster and faster, and from half the way slower and slower",
@@ -77,7 +82,7 @@ constexpr Said kSaid[] = {
      "linear 0 10 moveto doll trunk 500 400 500"},
     {"call",
      "performs a subroutine; its first frame is the one after the call's first, and it is cut off at the "
-     "last",
+     "last. In the strict dialect values for its parameters may follow: how many, and these",
      "call 0 5 wave\nsubroutine wave\nlinear 0 5 bendby arm shoulder trunk 90 z\nendsub wave"},
     {"endsub", "ends a subroutine",
      "call 0 5 wave\nsubroutine wave\nlinear 0 5 bendby arm shoulder trunk 90 z\nendsub wave"},

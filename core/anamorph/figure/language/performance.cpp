@@ -6,13 +6,21 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <type_traits>
 
 #include "anamorph/error.h"
 #include "anamorph/figure/language/actions.h"
 #include "anamorph/figure/language/figure_state.h"
 #include "anamorph/figure/language/script_parser.h"
+#include "anamorph/figure/language/script_symbols.h"
+#include "anamorph/figure/language/script_table.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph::figure {
+
+using text_file::excerpt;
+
 namespace {
 
 constexpr int kMostUnknownFrames = 1000000;
@@ -24,6 +32,46 @@ struct Span {
     double start = 0, stop = 0;
     bool holds(double frame) const { return start < frame && frame <= stop; }
 };
+
+/// The name of an entry of a table; its number where there is none.
+template <class Table>
+std::string entry_name(const Table& table, double at) {
+    if (!(at >= 0 && at < static_cast<double>(table.size()))) return shortest(at);
+    const auto& entry = table[static_cast<std::size_t>(at)];
+    if constexpr (std::is_same_v<Table, std::vector<std::string>>)
+        return excerpt(entry);
+    else
+        return excerpt(entry.name);
+}
+
+/// A value of a kind as scripts write it.
+std::string written(const Program& program, OperandKind kind, double value) {
+    switch (kind) {
+        case OperandKind::ellipsoid:
+            return entry_name(program.ellipsoids, value);
+        case OperandKind::joint:
+            return entry_name(program.joints, value);
+        case OperandKind::figure:
+            return entry_name(program.figures, value);
+        case OperandKind::subroutine:
+            return entry_name(program.subroutines, value);
+        case OperandKind::image:
+            return entry_name(program.images, value);
+        case OperandKind::axis:
+            return entry_name(std::vector<std::string>{"x", "y", "z"}, value);
+        default:
+            return shortest(value);
+    }
+}
+
+/// An operand in a trace: as written, a variable with what it holds.
+std::string told_of(const Program& program, const FigureState& state, const Operand& operand) {
+    if (operand.kind == OperandKind::number) return shortest(operand.number);
+    if (operand.kind != OperandKind::variable) return written(program, operand.kind, operand.index);
+    const FigureState::Value& value = state.variables[static_cast<std::size_t>(operand.index)];
+    return excerpt(program.variables[static_cast<std::size_t>(operand.index)]) + "=" +
+           written(program, value.kind, value.number);
+}
 
 }  // namespace
 
@@ -65,41 +113,72 @@ struct Performance::Impl {
         end = static_cast<int>(last_pending(0));
     }
 
-    Span span_of(std::size_t s, std::size_t i) const {
+    /// What a subroutine was called with; the script itself has nothing.
+    using Values = std::vector<Operand>;
+
+    /// An operand, or what was handed over for it.
+    static const Operand& handed_over(const Operand& operand, const Values& values) {
+        return operand.kind == OperandKind::parameter ? values[static_cast<std::size_t>(operand.index)]
+                                                      : operand;
+    }
+
+    /// An operand where `letter` is asked for. Throws Error where something else was handed over.
+    const Operand& value_of(std::size_t s, const Movement& m, const Operand& operand, char letter,
+                            const Values& values) const {
+        const Operand& value = handed_over(operand, values);
+        if (operand.kind == OperandKind::parameter && !fits(letter, value))
+            throw Error(
+                program.where(m.position) + ": " +
+                wrong_value(program.subroutines[s], static_cast<std::size_t>(operand.index), letter, value));
+        return value;
+    }
+
+    Span span_of(std::size_t s, std::size_t i, const Values& values) const {
         if (spans[s][i]) return *spans[s][i];
         const Movement& m = program.subroutines[s].movements[i];
-        return span_between(FigureAction::number(program, state, m.start, m.position),
-                            FigureAction::number(program, state, m.stop, m.position));
+        return span_between(
+            FigureAction::number(program, state, value_of(s, m, m.start, 'n', values), m.position),
+            FigureAction::number(program, state, value_of(s, m, m.stop, 'n', values), m.position));
+    }
+
+    /// A movement with what was handed over in the place of parameters.
+    Movement with_values(std::size_t s, const Movement& m, const Values& values) const {
+        Movement out = m;
+        const std::string_view letters = script_table::operands_of(m.action);
+        for (std::size_t k = 0; k < out.operands.size(); ++k)
+            out.operands[k] = value_of(s, m, m.operands[k], k < letters.size() ? letters[k] : '*', values);
+        return out;
     }
 
     /// The span of a movement, but nothing where variables are not ready for it.
-    std::optional<Span> span_ahead(std::size_t s, std::size_t i) const {
+    std::optional<Span> span_ahead(std::size_t s, std::size_t i, const Values& values) const {
         if (spans[s][i]) return spans[s][i];
         const Movement& m = program.subroutines[s].movements[i];
-        for (const Operand* operand : {&m.start, &m.stop}) {
+        for (const Operand* named : {&m.start, &m.stop}) {
+            const Operand* operand = &handed_over(*named, values);
             if (operand->kind != OperandKind::variable || program.dialect == Dialect::classic) continue;
             const auto& value = state.variables[static_cast<std::size_t>(operand->index)];
             if (!value.set || value.kind != OperandKind::number) return std::nullopt;
         }
-        return span_of(s, i);
+        return span_of(s, i, values);
     }
 
     /// The frame of a subroutine's clock that comes just before its first.
-    double zero_of(int subroutine) const {
+    double zero_of(int subroutine, const Values& values) const {
         const auto s = static_cast<std::size_t>(subroutine);
         if (zeros[s]) return *zeros[s];
         double zero = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < spans[s].size(); ++i)
-            if (const auto span = span_ahead(s, i)) zero = std::min(zero, span->start);
+            if (const auto span = span_ahead(s, i, values)) zero = std::min(zero, span->start);
         return std::isfinite(zero) ? zero : 0;
     }
 
     /// The last frame of the script's own movements after `frame`, or `frame` when there is none.
     double last_pending(double frame) const {
-        const double zero = zero_of(0);
+        const double zero = zero_of(0, {});
         double last = frame;
         for (std::size_t i = 0; i < spans[0].size(); ++i) {
-            const auto span = span_ahead(0, i);
+            const auto span = span_ahead(0, i, {});
             if (span && span->start < span->stop) last = std::max(last, span->stop - zero);
         }
         return std::min(last, 1.0 * kLargestFrame);
@@ -118,21 +197,29 @@ struct Performance::Impl {
                             : "a frame has more than " + std::to_string(kMostCalls) + " calls"));
     }
 
-    void perform_subroutine(int subroutine, double clock) {
+    void perform_subroutine(int subroutine, double clock, const Values& values) {
         const auto s = static_cast<std::size_t>(subroutine);
         for (std::size_t i = 0; i < spans[s].size(); ++i) {
-            const Span span = span_of(s, i);
+            const Span span = span_of(s, i, values);
             if (!span.holds(clock)) continue;
-            const Movement& m = program.subroutines[s].movements[i];
+            const Movement& written = program.subroutines[s].movements[i];
+            std::optional<Movement> bound;
+            if (!values.empty()) bound = with_values(s, written, values);
+            const Movement& m = bound ? *bound : written;
             idle = false;
+            if (program.trace) trace(subroutine, m, clock - span.start, span.stop - span.start);
             if (m.action == Action::call) {
                 const int called =
                     FigureAction::index(program, state, m.operands[0], OperandKind::subroutine, m.position);
                 check_calls(m, called);
+                const Values handed(m.operands.begin() + 1, m.operands.end());
+                const std::string fault =
+                    wrong_count(program.subroutines[static_cast<std::size_t>(called)], handed.size());
+                if (!fault.empty()) throw Error(program.where(m.position) + ": " + fault);
                 // A call runs on from frame to frame; as an action, `call` is the first frame each time.
                 const double since = m.distribution == Distribution::call ? clock - span.start : 1;
                 calling.push_back(called);
-                perform_subroutine(called, zero_of(called) + since);
+                perform_subroutine(called, zero_of(called, handed) + since, handed);
                 calling.pop_back();
                 continue;
             }
@@ -141,13 +228,25 @@ struct Performance::Impl {
         }
     }
 
+    /// Tells what is done, `step` of `steps`, with the values that operands have.
+    void trace(int subroutine, const Movement& m, double step, double steps) const {
+        if (performing <= told) return;
+        std::string line = "frame " + std::to_string(performing) + ", " + program.where(m.position) + ": ";
+        if (subroutine > 0)
+            line += excerpt(program.subroutines[static_cast<std::size_t>(subroutine)].name) + ": ";
+        line += std::string(name_of(m.distribution)) + " " + shortest(step) + "/" + shortest(steps);
+        if (m.distribution != Distribution::call) line += std::string(" ") + name_of(m.action);
+        for (const Operand& operand : m.operands) line += " " + told_of(program, state, operand);
+        say(line);
+    }
+
     /// Performs the frame after the one that `state` is at.
     void perform_next() {
         performing = now + 1;
         calls = 0;
         calling.clear();
         idle = true;
-        perform_subroutine(0, zero_of(0) + performing);
+        perform_subroutine(0, zero_of(0, {}) + performing, {});
         check_overlaps(program, state, performing);
         now = performing;
         told = std::max(told, now);
@@ -156,9 +255,9 @@ struct Performance::Impl {
     /// While nothing happens, the frame before the next in which something does.
     int idle_until() const {
         double next = kLargestFrame;
-        const double zero = zero_of(0);
+        const double zero = zero_of(0, {});
         for (std::size_t i = 0; i < spans[0].size(); ++i) {
-            const auto span = span_ahead(0, i);
+            const auto span = span_ahead(0, i, {});
             if (span && span->start < span->stop && span->stop - zero > now)
                 next = std::min(next, span->start - zero);
         }

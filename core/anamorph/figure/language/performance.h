@@ -35,7 +35,7 @@ namespace anamorph::figure {
 
 /// Options of a performance: its messages, and the memory that it uses.
 struct PerformanceOptions {
-    /// Receives the output of `print` and warnings, one line each, once for each frame however often it is performed.
+    /// Receives the output of `print` and of `debug`, and warnings, one line each, once for each frame however often it is performed.
     std::function<void(const std::string& line)> message;
     std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };

@@ -68,13 +68,14 @@ enum class Action {
 };
 
 /// The kind of an operand, which says in which table its name is.
-enum class OperandKind { number, variable, ellipsoid, joint, figure, axis, subroutine, image };
+enum class OperandKind { number, variable, ellipsoid, joint, figure, axis, subroutine, image, parameter };
 
 /// An operand of an action: a number, or a name by its position.
 struct Operand {
     OperandKind kind = OperandKind::number;
     double number = 0;  ///< the value of an operand that is a number
-    int index = 0;      ///< for other operands, the position in the table of its kind; axes are 0, 1, 2
+    int index = 0;  ///< for other operands, the position in the table of its kind; axes are 0, 1, 2, and a
+                    ///< parameter is counted in its subroutine
 
     bool operator==(const Operand&) const = default;
 };
@@ -89,7 +90,8 @@ struct Movement {
     Distribution distribution = Distribution::repeat;
     Operand start, stop;  ///< numbers or variables
     Action action = Action::call;
-    std::vector<Operand> operands;
+    std::vector<Operand>
+        operands;  ///< of a call the subroutine, and then what it hands over, in the order of the parameters
     ScriptPosition position;
 };
 
@@ -117,9 +119,10 @@ struct FigureDeclaration {
     ScriptPosition position;
 };
 
-/// The declaration `subroutine NAME ... endsub NAME`.
+/// The declaration `subroutine NAME ... endsub NAME`, in the strict dialect `subroutine NAME n parameters ...`.
 struct Subroutine {
     std::string name;
+    std::vector<std::string> parameters;
     std::vector<Movement> movements;
     ScriptPosition position;
 };
@@ -134,7 +137,8 @@ struct Program {
     std::vector<FigureDeclaration> figures;
     std::vector<Subroutine> subroutines;
     std::vector<std::string> variables, images;
-    int speed = 1;  ///< > 0 multiplies frame numbers; < 0: only each |speed|th is shown
+    bool trace = false;  ///< each action is told as it is performed
+    int speed = 1;       ///< > 0 multiplies frame numbers; < 0: only each |speed|th is shown
     std::optional<std::array<int, 2>> view;  ///< frames view[0] < f <= view[1] are shown
 
     /// A place as text: "walk.n:12:5".

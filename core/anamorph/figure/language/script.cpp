@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 
 #include "anamorph/error.h"
@@ -57,7 +58,10 @@ class Checker {
                            in_quotes(ellipsoid(figure.ellipsoids.front())) +
                            ": it will not move with the figure");
         }
-        if (m_program.dialect == Dialect::strict) check_calls();
+        if (m_program.dialect == Dialect::strict) {
+            check_calls();
+            check_handed_over();
+        }
         check_ends();
     }
 
@@ -95,6 +99,25 @@ class Checker {
                 return report(
                     true, m_program.subroutines[i].position,
                     "subroutines call themselves, by way of " + in_quotes(m_program.subroutines[i].name));
+    }
+
+    /// Whether calls hand over as many values as there are parameters, and what these stand for.
+    void check_handed_over() {
+        const ParameterUses uses = parameter_uses(m_program);
+        for (const Subroutine& s : m_program.subroutines)
+            for (const Movement& m : s.movements) {
+                if (m.action != Action::call || m.operands[0].kind != OperandKind::subroutine) continue;
+                const auto to = static_cast<std::size_t>(m.operands[0].index);
+                const Subroutine& called = m_program.subroutines[to];
+                if (const std::string fault = wrong_count(called, m.operands.size() - 1); !fault.empty()) {
+                    report(true, m.position, fault);
+                    continue;
+                }
+                for (std::size_t i = 0; i < called.parameters.size(); ++i)
+                    for (const char letter : uses[to][i])
+                        if (!fits(letter, m.operands[i + 1]))
+                            report(true, m.position, wrong_value(called, i, letter, m.operands[i + 1]));
+            }
     }
 
     /// Which subroutines the script may come to: all, where a variable says which.
@@ -174,7 +197,66 @@ class Checker {
     Program& m_program;
 };
 
+/// Adds letters to those that a parameter stands for; false where it has them all.
+bool add_letters(std::string& to, std::string_view letters) {
+    const std::size_t before = to.size();
+    for (const char letter : letters)
+        if (to.find(letter) == std::string::npos) to += letter;
+    return to.size() != before;
+}
+
 }  // namespace
+
+ParameterUses parameter_uses(const Program& program) {
+    using Place = std::pair<std::size_t, std::size_t>;  // of a parameter: its subroutine, its position there
+    ParameterUses uses;
+    for (const Subroutine& s : program.subroutines) uses.emplace_back(s.parameters.size());
+    std::map<Place, std::vector<Place>> handed_on;  // to a parameter, by those
+    std::vector<Place> changed;
+    for (std::size_t s = 0; s < uses.size(); ++s)
+        for (const Movement& m : program.subroutines[s].movements) {
+            const auto note = [&](const Operand& operand, std::string_view letter) {
+                if (operand.kind != OperandKind::parameter) return;
+                const Place place{s, static_cast<std::size_t>(operand.index)};
+                if (add_letters(uses[place.first][place.second], letter)) changed.push_back(place);
+            };
+            note(m.start, "n");
+            note(m.stop, "n");
+            const std::string_view letters = script_table::operands_of(m.action);
+            for (std::size_t i = 0; i < letters.size(); ++i) note(m.operands[i], letters.substr(i, 1));
+            if (m.action != Action::call || m.operands[0].kind != OperandKind::subroutine) continue;
+            const auto to = static_cast<std::size_t>(m.operands[0].index);
+            for (std::size_t i = 1; i < m.operands.size() && i <= uses[to].size(); ++i)
+                if (m.operands[i].kind == OperandKind::parameter)
+                    handed_on[{to, i - 1}].emplace_back(s, static_cast<std::size_t>(m.operands[i].index));
+        }
+    // What a parameter is handed on to, it stands for itself.
+    while (!changed.empty()) {
+        const Place at = changed.back();
+        changed.pop_back();
+        const auto from = handed_on.find(at);
+        if (from == handed_on.end()) continue;
+        for (const Place& place : from->second)
+            if (add_letters(uses[place.first][place.second], uses[at.first][at.second]))
+                changed.push_back(place);
+    }
+    return uses;
+}
+
+std::string wrong_count(const Subroutine& called, std::size_t values) {
+    const std::size_t wanted = called.parameters.size();
+    if (values == wanted) return {};
+    return "call hands over " + std::to_string(values) + " values, but the parameters of " +
+           in_quotes(called.name) + " are " + std::to_string(wanted) +
+           (values == 0 ? ": after the name stand how many values follow, and these" : "");
+}
+
+std::string wrong_value(const Subroutine& called, std::size_t parameter, char letter,
+                        const Operand& operand) {
+    return "call hands over " + std::string(description_of(operand.kind)) + ", but the parameter " +
+           in_quotes(called.parameters[parameter]) + " of " + in_quotes(called.name) + " stands for " +
+           description_of(letter);
+}
 
 void check_program(Script& script) {
     Checker(script).check();

@@ -18,6 +18,12 @@
 // its sign, and names that clash give warnings. In the strict dialect only subroutines may be named early,
 // and these are errors: clashes of names, declaring something twice, negative axes, joints that form a ring,
 // subroutines that call themselves, frames that run backwards.
+//
+// Subroutines of the strict dialect may have parameters: `subroutine S n parameter{n}`, and in calls
+// `call f0 f1 S n value{n}`. Within S a parameter is what the call hands over, as if that stood in its place, in every
+// frame: a number, a variable, which may be set, or the name of anything. It may have the name of nothing else.
+//
+// `debug n` with n of 0 or less makes a performance tell every action, as it does in the original, in words of ours.
 #pragma once
 
 #include <functional>

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kMostMessages = 100;  // of errors, and of warnings
 constexpr std::size_t kDeepestInclude = 16;
-constexpr int kMostCount = 1 << 20;
 // Shorter words are not taken for the beginning of a statement where something is wrong.
 constexpr std::size_t kShortestForm = 3;
 
@@ -79,6 +78,7 @@ void ScriptParser::parse_file(std::string_view text, const std::string& name,
                                        m_program.subroutines[static_cast<std::size_t>(m_subroutine)].name +
                                        " has no end");
         m_subroutine = subroutine;
+        m_parameters.clear();
     }
     m_including.pop_back();
 }
@@ -184,7 +184,7 @@ ScriptPosition ScriptParser::position_of(const ScriptToken& token) const {
 }
 
 bool ScriptParser::begins_statement(const ScriptToken& token) const {
-    if (m_symbols.known(token.text)) return false;
+    if (m_symbols.known(token.text) || m_parameters.contains(token.text)) return false;
     if (script_table::is_keyword(token.text)) return true;
     return token.begins_line && token.text.size() >= kShortestForm &&
            script_table::find_statement(token.text);
@@ -317,7 +317,7 @@ bool ScriptParser::rest_of_statement(const script_table::Entry& entry, const Scr
             view();
             break;
         case Keyword::debug:
-            take_number("a number");
+            m_program.trace = take_number("a number") <= 0;
             break;
         case Keyword::include:
             parse_included(std::string(take_operand("a file name").text), position_of(word));
@@ -424,6 +424,23 @@ void ScriptParser::begin_subroutine() {
         return;
     }
     m_subroutine = index;
+    m_parameters.clear();
+    if (strict() && looks_like_number(peek().text)) parameters();
+}
+
+void ScriptParser::parameters() {
+    const int count = take_integer("the number of parameters, an integer of at least 0", 0, kMostCount);
+    for (int i = 0; i < count; ++i) {
+        const ScriptToken token = peek();
+        const std::string name = take_name(OperandKind::parameter);
+        if (!m_symbols.other_kind(OperandKind::parameter, name))
+            m_parameter_names.emplace_back(name, position_of(token));
+        if (!m_parameters.emplace(name, i).second)
+            error(position_of(token), "the parameter " + in_quotes(name) + " is declared twice");
+        auto& declared = m_program.subroutines[static_cast<std::size_t>(m_subroutine)].parameters;
+        declared.push_back(name);
+        check_size(declared.size(), position_of(token));
+    }
 }
 
 void ScriptParser::end_subroutine() {
@@ -435,6 +452,7 @@ void ScriptParser::end_subroutine() {
         report(Severity::error, position_of(token), std::string(token.text), current,
                "found the end of " + in_quotes(token.text) + ", expected the end of " + in_quotes(current));
     m_subroutine = 0;
+    m_parameters.clear();
 }
 
 void ScriptParser::speed() {

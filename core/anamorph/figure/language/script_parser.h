@@ -2,6 +2,8 @@
 // The parser behind parse_script().
 #pragma once
 
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,6 +18,14 @@ namespace anamorph::figure {
 
 /// The largest number of a frame; numbers beyond it, either way, count as this.
 inline constexpr int kLargestFrame = 1000000000;
+/// The largest number that a statement counts its names by.
+inline constexpr int kMostCount = 1 << 20;
+
+/// The letters of script_table::Entry::operands that the parameters of each subroutine stand for, in their order.
+using ParameterUses = std::vector<std::vector<std::string>>;
+
+/// What parameters stand for, where they are handed on too; calls by variables are not known.
+ParameterUses parameter_uses(const Program& program);
 
 class ScriptParser {
   public:
@@ -55,6 +65,7 @@ class ScriptParser {
     void limit();
     void variables();
     void begin_subroutine();
+    void parameters();
     void end_subroutine();
     void speed();
     void view();
@@ -71,6 +82,11 @@ class ScriptParser {
     int take_integer(const char* expected, int smallest, int largest);
     int take_mention(OperandKind kind);  ///< an ellipsoid: made when it is new
     Operand take_value(char letter, Pending& pending, bool& waits, bool& usable);
+    /// The parameter of the subroutine being read that has this name.
+    std::optional<int> parameter_of(std::string_view name) const;
+    /// What a call hands over that is known by what the parameter stands for alone: a picture, or what an action makes.
+    std::optional<Operand> made_for_parameter(const Pending& pending, const ParameterUses& uses);
+    void check_parameter_names();
     void check_frames(const Movement& movement);
     void resolve_pending();
 
@@ -96,9 +112,12 @@ class ScriptParser {
     int m_file = 0;
     const script_table::Entry* m_entry = nullptr;  ///< entry of the statement or action being read
     ScriptPosition m_entry_position;
-    std::set<std::string, std::less<>> m_short_forms;     ///< short forms that have been warned of
-    int m_subroutine = 0;                                 ///< the subroutine that is being read
-    std::set<int> m_defined_subroutines{0}, m_shaped{0};  ///< declared in full, not only named
+    std::set<std::string, std::less<>> m_short_forms;      ///< short forms that have been warned of
+    int m_subroutine = 0;                                  ///< the subroutine that is being read
+    std::set<int> m_defined_subroutines{0}, m_shaped{0};   ///< declared in full, not only named
+    std::map<std::string, int, std::less<>> m_parameters;  ///< of the subroutine that is being read
+    /// The names of parameters that nothing else had so far.
+    std::vector<std::pair<std::string, ScriptPosition>> m_parameter_names;
     std::vector<std::string> m_including;
     std::size_t m_included_bytes = 0;
     std::vector<Pending> m_pending;
@@ -113,6 +132,11 @@ inline bool runs_backwards(const Movement& m) {
     return m.start.kind == OperandKind::number && m.stop.kind == OperandKind::number &&
            m.stop.number < m.start.number;
 }
+
+/// What is wrong with the number of values that a call hands over; empty where nothing is.
+std::string wrong_count(const Subroutine& called, std::size_t values);
+/// What to say of an operand that does not fit the letter which a parameter stands for.
+std::string wrong_value(const Subroutine& called, std::size_t parameter, char letter, const Operand& operand);
 
 /// Checks what only the whole program shows: rings of joints, figures in pieces, subroutines that call
 /// themselves.

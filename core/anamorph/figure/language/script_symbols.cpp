@@ -100,8 +100,22 @@ const char* description_of(OperandKind kind) {
             return "a subroutine";
         case OperandKind::image:
             return "a picture";
+        case OperandKind::parameter:
+            return "a parameter";
     }
     return "";
+}
+
+bool fits(char letter, const Operand& operand) {
+    const OperandKind kind = operand.kind;
+    if (letter == '*' || kind == OperandKind::parameter) return true;
+    if (letter == 'n') return kind == OperandKind::number || kind == OperandKind::variable;
+    if (letter == 'v') return kind == OperandKind::variable;
+    if (letter == 'J') letter = 'j';
+    if (letter == 'F') letter = 'f';
+    // World is an ellipsoid and a figure.
+    const bool world = letter == 'f' && kind == OperandKind::ellipsoid && operand.index == 0;
+    return kind == OperandKind::variable || world || (kind == kind_of(letter) && !kinds_for(letter).empty());
 }
 
 std::string in_quotes(std::string_view text) {
@@ -202,7 +216,7 @@ int ScriptSymbols::make(OperandKind kind, std::string_view name, const ScriptPos
             append(m_program.figures, FigureDeclaration{text, {}, position});
             break;
         case OperandKind::subroutine:
-            append(m_program.subroutines, Subroutine{text, {}, position});
+            append(m_program.subroutines, Subroutine{text, {}, {}, position});
             break;
         case OperandKind::variable:
             append(m_program.variables, text);

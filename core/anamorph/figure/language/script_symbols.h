@@ -17,6 +17,9 @@ namespace anamorph::figure {
 const char* description_of(char letter);
 const char* description_of(OperandKind kind);
 
+/// Whether an operand may stand where a letter of script_table::Entry::operands is; what a variable holds is not known yet.
+bool fits(char letter, const Operand& operand);
+
 /// A text as messages show it: in quotes, on one line, not endless.
 std::string in_quotes(std::string_view text);
 

@@ -21,7 +21,12 @@ constexpr Entry action(std::string_view word, Action a, std::string_view operand
 
 /// `call` both begins a statement and is an action.
 constexpr Entry call() {
-    return {"call", Keyword::distribution, Distribution::call, Action::call, "s", "frame frame subroutine"};
+    return {"call",
+            Keyword::distribution,
+            Distribution::call,
+            Action::call,
+            "s",
+            "frame frame subroutine [count value ...]"};
 }
 
 constexpr Entry kEntries[] = {
@@ -30,7 +35,7 @@ constexpr Entry kEntries[] = {
     declaration("joint", Keyword::joint, "name ellipsoid x y z ellipsoid x y z"),
     declaration("copy", Keyword::dead),
     distribution("accelerate", Distribution::accelerate),
-    declaration("subroutine", Keyword::subroutine, "name"),
+    declaration("subroutine", Keyword::subroutine, "name [count parameter ...]"),
     action("balance", Action::balance, "ejea", "ellipsoid joint ellipsoid axis"),
     action("attach", Action::attach, "eJennn", "ellipsoid new-joint ellipsoid x y z"),
     action("detach", Action::detach, "ejF", "ellipsoid joint new-figure"),
@@ -112,6 +117,12 @@ const Entry* first_with(std::string_view word, const Allowed& allowed) {
 
 std::span<const Entry> entries() {
     return kEntries;
+}
+
+std::string_view operands_of(Action action) {
+    for (const Entry& entry : kEntries)
+        if (!entry.operands.empty() && entry.action == action) return entry.operands;
+    return {};
 }
 
 const Entry* find_statement(std::string_view word) {

@@ -43,6 +43,8 @@ struct Entry {
 
 std::span<const Entry> entries();
 
+/// The letters of an action's operands.
+std::string_view operands_of(Action action);
 /// The first entry that begins with `word` and can begin a statement; nullptr where there is none.
 const Entry* find_statement(std::string_view word);
 /// The first entry that begins with `word` and is an action or ignored; nullptr where there is none.
