@@ -51,12 +51,13 @@ struct Settings {
     ScriptSource source;
     std::string output = "-", frames, word;
     DrawingOptions drawing;
-    double size = kSizeRow.standard;  ///< of the window of 1000 units, in pixels
-    double perspective = 0;           ///< the distance from the eye to the middle of the window; 0: none
-    bool fit = false;                 ///< the view
-    FigureLook look;                  ///< of films
-    double frames_per_second = 0;     ///< 0: the motion's own
-    double scene_tol = 0;             ///< 0: spheres of the usual cells
+    std::optional<Viewport> viewport;  ///< in shares of the picture
+    double size = kSizeRow.standard;   ///< of the window of 1000 units, in pixels
+    double perspective = 0;            ///< the distance from the eye to the middle of the window; 0: none
+    bool fit = false;                  ///< the view
+    FigureLook look;                   ///< of films
+    double frames_per_second = 0;      ///< 0: the motion's own
+    double scene_tol = 0;              ///< 0: spheres of the usual cells
     int threads = static_cast<int>(kThreadsRow.standard), columns = static_cast<int>(kColumnsRow.standard);
     Characters characters = Characters::braille;
 };
@@ -65,6 +66,20 @@ std::string one_line(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
     return text;
+}
+
+/// Reads --viewport.
+Viewport viewport_from(const std::string& text) {
+    std::vector<double> numbers;
+    for (const char *at = text.data(), *stop = at + text.size(); at <= stop;) {
+        double value = 0;
+        const auto [end, error] = std::from_chars(at, stop, value);
+        // What is no number is none of four.
+        if (error != std::errc() || (end != stop && *end != ',')) return viewport_of("--viewport", text, {});
+        numbers.push_back(value);
+        at = end + 1;
+    }
+    return viewport_of("--viewport", text, numbers);
 }
 
 /// The numbers of a row, and no others (CLI11's own check lets NaN pass).
@@ -246,6 +261,21 @@ class Command {
                       "Draw the curves, too, in which bodies pass through each other");
         add_number(sub, "--lod", d.lod, kLevelOfDetailRow,
                    "Bodies no wider, in pixels, are drawn as dots and lines");
+        add_viewport(sub, "");
+    }
+
+    void add_viewport(CLI::App* sub, const std::string& of) {
+        sub->add_option_function<std::string>(
+               "--viewport", [this](const std::string& text) { m_settings.viewport = viewport_from(text); },
+               of + "Draw within an ellipse only: its middle, from the upper left, and its half-axes in "
+                    "shares of the picture's width and height, such as .5,.5,.5,.5")
+            ->option_text("X,Y,A,B");
+    }
+
+    /// The viewport on a page; none where none was asked for.
+    std::optional<Viewport> viewport_on(const glm::dvec2& page) const {
+        if (!m_settings.viewport) return std::nullopt;
+        return in_pixels(*m_settings.viewport, page, {0, 0});
     }
 
     /// How figures are seen, and on how many threads.
@@ -279,6 +309,7 @@ class Command {
                "names")
             ->transform(CLI::CheckedTransformer(styles))
             ->option_text("shaded|textured|outline|stick [shaded]");
+        add_viewport(sub, "Of styles outline and stick: ");
         static const std::map<std::string, Lighting> lightings{
             {"rasel", Lighting::rasel}, {"lambert", Lighting::lambert}, {"blinn", Lighting::blinn}};
         sub->add_option("--lighting", m_settings.look.light.lighting, "How bodies are shaded")
@@ -541,7 +572,9 @@ class Command {
         const glm::dvec2 page(m_settings.size);
         View view = view_for(frame, page);
         fit_view(view, extent, page);
-        return draw(frame, view, page, m_settings.drawing, parallel_for);
+        DrawingOptions options = m_settings.drawing;
+        options.viewport = viewport_on(page);
+        return draw(frame, view, page, options, parallel_for);
     }
 
     int draw_as(const std::string& format) {
@@ -600,12 +633,16 @@ class Command {
         View view = view_for(frame, page);
         fit_view(view, extent, page);
         FigureLook look = m_settings.look;
+        look.lines.viewport = viewport_on(page);
         if (frame.bands.empty()) look.background = glm::dvec3(1.0);
         const FigurePicture picture(frame, view, {side, side}, look, parallel_for);
         return {frame.number, picture_bytes(picture, look, {side, side}, textures.sources(), parallel_for)};
     }
 
     int write_film() {
+        const FigureStyle style = m_settings.look.style;
+        if (m_settings.viewport && style != FigureStyle::outline && style != FigureStyle::stick)
+            throw Error("--viewport is of --style outline and stick alone");
         std::unique_ptr<Motion> motion;
         const FrameRange range = range_or("all");
         Progress progress([&] { return count_of(range, *motion); });

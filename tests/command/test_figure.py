@@ -262,6 +262,17 @@ class Pictures(Case):
         self.assertGreater(counts[0], 2 * counts[1])
         self.assertGreater(counts[1], 2 * counts[2])
 
+    def test_a_viewport_cuts_lines(self):
+        ball = scene(("ball", (100, 100, 100), (500, 500, 500)))
+        # Circles of 50 pixels, 30 apart, cross 15 pixels to the right of the middle.
+        points = [p for _, points, _ in self.paths(ball, "--viewport=.56,.5,.1,.1", kind="visible") for p in points]
+        self.assertAlmostEqual(min(x for x, _ in points), 265, delta=0.1)
+        self.assertAlmostEqual(max(x for x, _ in points), 300, delta=0.1)
+        height = math.sqrt(50 ** 2 - 15 ** 2)
+        self.assertAlmostEqual(min(y for _, y in points), 250 - height, delta=0.1)
+        self.assertAlmostEqual(max(y for _, y in points), 250 + height, delta=0.1)
+        self.assertEqual(self.paths(ball, "--viewport=.9,.5,.1,.1", kind="visible"), [])
+
     def test_halo_lines_lie_under_nearer_ones(self):
         elements = list(self.svg(NEAR_AND_FAR, "--halo=3", "--line-width=2").iter(SVG + "path"))
         self.assertEqual([e.get("class") for e in elements], ["halo", "visible", "halo", "visible"])
@@ -806,6 +817,11 @@ class BadInput(Case):
                 (["svg", WALKER, "--threads=-1"], "--threads"), (["text", WALKER, "--width=0"], "--width"),
                 (["svg", WALKER, "--threads=1.5"], "--threads"),
                 (["svg", WALKER, "--hidden=maybe"], "--hidden"), (["check", WALKER, "--dialect=new"], "--dialect"),
+                (["svg", WALKER, "--viewport=1,2,3"], "--viewport=1,2,3: must be x,y,a,b"),
+                (["svg", WALKER, "--viewport="], "--viewport"),
+                (["text", WALKER, "--viewport=.5,.5,nan,.5"], "must be x,y,a,b"),
+                (["png", WALKER, "--viewport=.5,.5,.5,0"], "the half-axes, from 1e-04 to 10"),
+                (["film", WALKER, "--viewport=.5,.5,.5,.5", "-o", "x.png"], "--style outline and stick"),
                 (["svg", WALKER, "--nothing"], "--nothing")):
             self.assertIn(said, self.error(*options), options)
 

@@ -171,6 +171,12 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
     EXPECT_THAT(error_of({{"camera", "1,2,1e300"}}), HasSubstr("must be three numbers from -1e+09 to 1e+09"));
     EXPECT_THAT(error_of({{"place", "1"}}), HasSubstr("place=1"));
     EXPECT_THAT(error_of({{"light", "0,0,0"}}), HasSubstr("light=0,0,0: must not be 0,0,0"));
+    EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5"}, {"style", "outline"}}),
+                HasSubstr("viewport=0.5,0.5,0.5: must be x,y,a,b"));
+    EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5,0"}, {"style", "stick"}}), HasSubstr("from 1e-04 to 10"));
+    EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5,nan"}, {"style", "stick"}}), HasSubstr("viewport"));
+    EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5,0.5"}}),
+                HasSubstr("is of styles outline and stick alone"));
     EXPECT_THAT(error_of({{"background", "0,0,256"}}), HasSubstr("must be three numbers from 0 to 255"));
     Texts wrong;
     wrong.files["a/doll.n"] = "figure f 1 e\nelipsoid e 1 2 3\nstop\n";
@@ -179,6 +185,37 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
     EXPECT_THAT(error_of({}, wrong), HasSubstr("a/doll.n"));
     wrong.files["a/doll.n"] = "include none.n\n" + std::string(kScript);
     EXPECT_THAT(error_of({}, wrong), AllOf(HasSubstr("doll.n:1"), HasSubstr("none.n")));
+}
+
+TEST(FigureOperation, ViewportsAreSharesOfThePicture) {
+    const std::vector<Assignment> lines = {
+        {"style", "outline"}, {"zoom", "3"}, {"line_width", "1"}, {"viewport", "0.5,0.25,0.25,0.25"}};
+    const std::vector<float> cut = drawn(lines), whole = drawn({lines.begin(), lines.begin() + 3});
+    double inside = 0, beyond = 0;
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const auto at = static_cast<std::size_t>(4 * (64 * y + x) + 3);
+            const double away = std::hypot((x + 0.5 - 32) / 16, (y + 0.5 - 12) / 12);
+            // Lines reach half their width beyond their middles, their ends likewise.
+            if (away > 1.15) {
+                EXPECT_EQ(cut[at], 0) << x << " " << y;
+            } else if (away < 0.85) {
+                EXPECT_EQ(cut[at], whole[at]) << x << " " << y;
+            }
+            inside += away < 0.85 ? whole[at] : 0;
+            beyond += away > 1.15 ? whole[at] : 0;
+        }
+    EXPECT_GT(inside, 1);
+    EXPECT_GT(beyond, 1);
+    // Overscan leaves it where it is.
+    std::vector<Assignment> more = lines;
+    more.push_back({"overscan", "8x4"});
+    const std::vector<float> wide = drawn(more);
+    ASSERT_EQ(wide.size(), 80u * 56 * 4);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64 * 4; ++x)
+            ASSERT_NEAR(wide[static_cast<std::size_t>(4 * 80 * (y + 4) + 32 + x)],
+                        cut[static_cast<std::size_t>(4 * 64 * y + x)], 1.01 / 128);
 }
 
 TEST(FigureOperation, BackgroundsAreColorsAndBands) {

@@ -188,6 +188,29 @@ TEST(FigureParameters, NamePicturesJointsAndFiguresThatAreMade) {
     expect_near(body_named(frame, "b").shape.center, {7, 0, 0}, 1e-12);
 }
 
+TEST(FigureParameters, NamePicturesThatAreHandedOn) {
+    Performance p = perform(
+        "figure f 1 a\nellipsoid a 10 10 10\ncall 0 1 first 2 cloth a\n"
+        "subroutine first 2 p q\nrepeat 0 1 call second 2 q p\nendsub first\n"
+        "subroutine second 2 p q\nrepeat 0 1 texture p q 1 2\nendsub second\nstop",
+        Dialect::strict);
+    EXPECT_EQ(body_named(p.frame(1), "a").texture, "cloth");
+}
+
+TEST(FigureParameters, OfSubroutinesThatAreHandedOverMayCallThemselves) {
+    const auto failure = [](const std::string& inner) {
+        return error_of([&] {
+            perform(kTwo + "call 0 1 wave 2 wave 3\nsubroutine wave 2 again n\nrepeat 0 1 " + inner +
+                        "\nendsub wave\nstop",
+                    Dialect::strict)
+                .frame(1);
+        });
+    };
+    EXPECT_EQ(failure("moveby f world n 0 0"), "no error");
+    EXPECT_THAT(failure("call again 2 again n"), HasSubstr("subroutines call each other without end"));
+    EXPECT_THAT(failure("call again 1 n"), HasSubstr("hands over 1 values, but the parameters of"));
+}
+
 TEST(FigureParameters, ASubroutineInAVariableIsCheckedWhenItIsCalled) {
     const auto failure = [](const std::string& values) {
         return error_of([&] {

@@ -254,6 +254,18 @@ TEST(FigureScript, WhatIsWrongWithParameters) {
     EXPECT_THAT(error("call 0 4 wave 1 b", "1 a"), HasSubstr("\"a\" is the name of an ellipsoid as well"));
     EXPECT_THAT(error("call 0 4 wave 1 b", "1.5 limb"), HasSubstr("expected the number of parameters"));
     EXPECT_THAT(error("call 0 4 wave 1 b", "3 limb"), HasSubstr("expected a name for a parameter"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1 late\nvariables 1 late"),
+                HasSubstr("7:19: error: \"late\" is the name of a variable as well"));
+    EXPECT_THAT(error("call 0 4 wave 1 b", "1 bendby"), HasSubstr("expected a name for a parameter"));
+    EXPECT_THAT(error("call 0 4 wave 1 nan", bends), HasSubstr("found \"nan\""));
+    // What is handed on is checked where it comes from.
+    EXPECT_THAT(
+        error("call 0 4 wave 1 90\nsubroutine on 1 it\nlinear 0 4 bendby it j a 90 x\nendsub on",
+              "1 limb\ncall 0 4 on 1 limb"),
+        HasSubstr("hands over a number, but the parameter \"limb\" of \"wave\" stands for an ellipsoid"));
+    // One inside of another has parameters of its own.
+    EXPECT_THAT(error("call 0 4 wave 3 b b b", "3 k l m\nsubroutine inner 1 n\nrepeat 0 1 set u m"),
+                HasSubstr("begins inside of another"));
     // They are known in their subroutine alone.
     EXPECT_THAT(messages(parse(kFigure + "subroutine s 1 limb\nendsub s\nrepeat 0 1 set u limb\nstop",
                                Dialect::strict)),

@@ -157,6 +157,9 @@ ParameterTable line_rows() {
     return {
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
+        numbers("viewport", -kInfinity,
+                "of styles outline and stick: x,y,a,b: the middle, from the upper left, and the half-axes of "
+                "an ellipse in shares of the picture's width and height; lines end at it"),
         enumeration(
             "mapping", "latlong",
             {{"latlong", figure::BodyMapping::latlong},
@@ -400,6 +403,15 @@ figure::Light read_light(const ParameterValues& values) {
     return light;
 }
 
+/// The viewport in shares of the picture.
+void read_viewport(const ParameterValues& values, figure::FigureLook& look) {
+    if (!values.given("viewport")) return;
+    const std::string text = values.text("viewport");
+    look.lines.viewport = figure::viewport_of("viewport", text, values.numbers("viewport"));
+    if (look.style != figure::FigureStyle::outline && look.style != figure::FigureStyle::stick)
+        throw Error("viewport", printable(text), "is of styles outline and stick alone");
+}
+
 /// A colour, or bands.
 void read_background(const ParameterValues& values, figure::FigureLook& look) {
     if (!values.given("background")) return;
@@ -438,6 +450,7 @@ FigureRequest read_request(const ParameterValues& values) {
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
+    read_viewport(values, look);
     request.camera = three(values, "camera", -kFar, kFar);
     request.place = three(values, "place", -kFar, kFar);
     request.fit = values.toggle("fit");
@@ -507,6 +520,9 @@ class Figures final : public Pictures {
             figure::FigureFrame scene = film->frame(number);
             FigureRequest r = request;
             r.look.lines.line_width = std::ldexp(r.look.lines.line_width, -level);
+            if (auto& viewport = r.look.lines.viewport)
+                viewport = in_pixels(*viewport, {size.width, size.height},
+                                     {r.look.overscan.width, r.look.overscan.height});
             figure::View view = r.view_of(scene, *extent, size);
             view.middle += glm::dvec2(r.look.overscan.width, r.look.overscan.height);
             return std::make_unique<SolvedFigure>(figure::FigurePicture(std::move(scene), view, all, r.look),

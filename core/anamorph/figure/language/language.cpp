@@ -23,8 +23,7 @@ constexpr Said kSaid[] = {
      "accelerate 0 10 moveby doll trunk 100 0 0"},
     {"subroutine",
      "begins movements that calls perform, up to endsub; frames count from its own first. In the strict "
-     "dialect it may have "
-     "parameters: how many, and their names, which stand for what a call hands over",
+     "dialect it may have parameters: how many, and their names, which stand for what a call hands over",
      "call 0 5 wave\nsubroutine wave\nlinear 0 5 bendby arm shoulder trunk 90 z\nendsub wave"},
     {"balance",
      "turns the part of the figure on the ellipsoid's side of the joint, about an axis of the second, until "
@@ -69,8 +68,7 @@ constexpr Said kSaid[] = {
      "linear 0 10 bendto arm shoulder trunk 0 0 90"},
     {"debug",
      "with a number of 0 or less every action is told as it is performed: frame, place in the script, step "
-     "of steps, "
-     "operands",
+     "of steps, operands",
      "debug 0"},
     {"repeat", "the action works in full in every frame after the first up to the second",
      "repeat 0 10 moveby doll trunk 10 0 0"},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 
 #include "anamorph/error.h"
@@ -100,30 +101,9 @@ class Checker {
                     "subroutines call themselves, by way of " + in_quotes(m_program.subroutines[i].name));
     }
 
-    /// Letters that each parameter of a subroutine stands for.
-    std::vector<std::string> uses_of(const Subroutine& subroutine) const {
-        std::vector<std::string> uses(subroutine.parameters.size());
-        const auto note = [&](const Operand& operand, char letter) {
-            if (operand.kind == OperandKind::parameter)
-                uses[static_cast<std::size_t>(operand.index)] += letter;
-        };
-        for (const Movement& m : subroutine.movements) {
-            note(m.start, 'n');
-            note(m.stop, 'n');
-            const std::string_view letters = script_table::operands_of(m.action);
-            for (std::size_t i = 0; i < letters.size(); ++i) note(m.operands[i], letters[i]);
-        }
-        for (std::string& letters : uses) {
-            std::sort(letters.begin(), letters.end());
-            letters.erase(std::unique(letters.begin(), letters.end()), letters.end());
-        }
-        return uses;
-    }
-
     /// Whether calls hand over as many values as there are parameters, and what these stand for.
     void check_handed_over() {
-        std::vector<std::vector<std::string>> uses;
-        for (const Subroutine& s : m_program.subroutines) uses.push_back(uses_of(s));
+        const ParameterUses uses = parameter_uses(m_program);
         for (const Subroutine& s : m_program.subroutines)
             for (const Movement& m : s.movements) {
                 if (m.action != Action::call || m.operands[0].kind != OperandKind::subroutine) continue;
@@ -217,7 +197,51 @@ class Checker {
     Program& m_program;
 };
 
+/// Adds letters to those that a parameter stands for; false where it has them all.
+bool add_letters(std::string& to, std::string_view letters) {
+    const std::size_t before = to.size();
+    for (const char letter : letters)
+        if (to.find(letter) == std::string::npos) to += letter;
+    return to.size() != before;
+}
+
 }  // namespace
+
+ParameterUses parameter_uses(const Program& program) {
+    using Place = std::pair<std::size_t, std::size_t>;  // of a parameter: its subroutine, its position there
+    ParameterUses uses;
+    for (const Subroutine& s : program.subroutines) uses.emplace_back(s.parameters.size());
+    std::map<Place, std::vector<Place>> handed_on;  // to a parameter, by those
+    std::vector<Place> changed;
+    for (std::size_t s = 0; s < uses.size(); ++s)
+        for (const Movement& m : program.subroutines[s].movements) {
+            const auto note = [&](const Operand& operand, std::string_view letter) {
+                if (operand.kind != OperandKind::parameter) return;
+                const Place place{s, static_cast<std::size_t>(operand.index)};
+                if (add_letters(uses[place.first][place.second], letter)) changed.push_back(place);
+            };
+            note(m.start, "n");
+            note(m.stop, "n");
+            const std::string_view letters = script_table::operands_of(m.action);
+            for (std::size_t i = 0; i < letters.size(); ++i) note(m.operands[i], letters.substr(i, 1));
+            if (m.action != Action::call || m.operands[0].kind != OperandKind::subroutine) continue;
+            const auto to = static_cast<std::size_t>(m.operands[0].index);
+            for (std::size_t i = 1; i < m.operands.size() && i <= uses[to].size(); ++i)
+                if (m.operands[i].kind == OperandKind::parameter)
+                    handed_on[{to, i - 1}].emplace_back(s, static_cast<std::size_t>(m.operands[i].index));
+        }
+    // What a parameter is handed on to, it stands for itself.
+    while (!changed.empty()) {
+        const Place at = changed.back();
+        changed.pop_back();
+        const auto from = handed_on.find(at);
+        if (from == handed_on.end()) continue;
+        for (const Place& place : from->second)
+            if (add_letters(uses[place.first][place.second], uses[at.first][at.second]))
+                changed.push_back(place);
+    }
+    return uses;
+}
 
 std::string wrong_count(const Subroutine& called, std::size_t values) {
     const std::size_t wanted = called.parameters.size();

@@ -86,7 +86,6 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
         return {OperandKind::number, *number, 0};
     }
     if (const auto parameter = parameter_of(token.text)) {
-        m_uses[{m_subroutine, *parameter}] += letter;
         return {OperandKind::parameter, 0, *parameter};
     }
     if (const auto found = m_symbols.resolve(letter, token.text)) {
@@ -117,24 +116,39 @@ std::optional<int> ScriptParser::parameter_of(std::string_view name) const {
     return found == m_parameters.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::optional<Operand> ScriptParser::made_for_parameter(const Pending& pending) {
+std::optional<Operand> ScriptParser::made_for_parameter(const Pending& pending, const ParameterUses& uses) {
     const Movement& m =
         m_program.subroutines[static_cast<std::size_t>(pending.subroutine)].movements[pending.movement];
     if (pending.operand < 3 || m.action != Action::call || m.operands[0].kind != OperandKind::subroutine)
         return std::nullopt;
-    const auto uses = m_uses.find({m.operands[0].index, static_cast<int>(pending.operand) - 3});
-    if (uses == m_uses.end()) return std::nullopt;
+    const std::vector<std::string>& parameters = uses[static_cast<std::size_t>(m.operands[0].index)];
+    if (pending.operand - 3 >= parameters.size()) return std::nullopt;
+    const std::string& letters = parameters[pending.operand - 3];
     for (const auto& [letter, kind] : {std::pair('i', OperandKind::image), std::pair('J', OperandKind::joint),
                                        std::pair('F', OperandKind::figure)})
-        if (uses->second.find(letter) != std::string::npos)
+        if (letters.find(letter) != std::string::npos)
             return Operand{kind, 0, m_symbols.make(kind, pending.name, pending.position)};
     return std::nullopt;
 }
 
+void ScriptParser::check_parameter_names() {
+    for (const auto& [name, position] : m_parameter_names)
+        if (const auto other = m_symbols.other_kind(OperandKind::parameter, name))
+            error(position, in_quotes(name) + " is the name of " + description_of(*other) + " as well");
+}
+
 void ScriptParser::resolve_pending() {
+    const auto operand_of = [&](const Pending& p) -> Operand& {
+        Movement& m = m_program.subroutines[static_cast<std::size_t>(p.subroutine)].movements[p.movement];
+        return p.operand == 0 ? m.start : p.operand == 1 ? m.stop : m.operands[p.operand - 2];
+    };
+    // What values of calls are may hang on the subroutines.
+    for (const Pending& p : m_pending)
+        if (p.letter == 's') operand_of(p) = m_symbols.resolve('s', p.name).value_or(Operand{});
+    const ParameterUses uses = parameter_uses(m_program);
     for (const Pending& p : m_pending) {
         auto found = m_symbols.resolve(p.letter, p.name);
-        if (!found) found = made_for_parameter(p);
+        if (!found) found = made_for_parameter(p, uses);
         const bool wrong = found && p.letter == 'v' && found->kind != OperandKind::variable;
         const bool undefined =
             found && found->kind == OperandKind::subroutine && !m_defined_subroutines.contains(found->index);
@@ -144,9 +158,9 @@ void ScriptParser::resolve_pending() {
                        suggestion(m_symbols.nearest(p.letter, p.name)) + p.usage);
             continue;
         }
-        Movement& m = m_program.subroutines[static_cast<std::size_t>(p.subroutine)].movements[p.movement];
-        (p.operand == 0 ? m.start : p.operand == 1 ? m.stop : m.operands[p.operand - 2]) = *found;
+        operand_of(p) = *found;
     }
+    check_parameter_names();
     // Ellipsoids are made where they are first named: each needs its shape somewhere.
     for (std::size_t i = 1; i < m_program.ellipsoids.size(); ++i)
         if (!m_shaped.contains(static_cast<int>(i)))

@@ -424,7 +424,6 @@ void ScriptParser::begin_subroutine() {
         return;
     }
     m_subroutine = index;
-    // One that is begun within another knows nothing of that one's.
     m_parameters.clear();
     if (strict() && looks_like_number(peek().text)) parameters();
 }
@@ -434,6 +433,8 @@ void ScriptParser::parameters() {
     for (int i = 0; i < count; ++i) {
         const ScriptToken token = peek();
         const std::string name = take_name(OperandKind::parameter);
+        if (!m_symbols.other_kind(OperandKind::parameter, name))
+            m_parameter_names.emplace_back(name, position_of(token));
         if (!m_parameters.emplace(name, i).second)
             error(position_of(token), "the parameter " + in_quotes(name) + " is declared twice");
         auto& declared = m_program.subroutines[static_cast<std::size_t>(m_subroutine)].parameters;

@@ -21,6 +21,12 @@ inline constexpr int kLargestFrame = 1000000000;
 /// The largest number that a statement counts its names by.
 inline constexpr int kMostCount = 1 << 20;
 
+/// The letters of script_table::Entry::operands that the parameters of each subroutine stand for, in their order.
+using ParameterUses = std::vector<std::vector<std::string>>;
+
+/// What parameters stand for, where they are handed on too; calls by variables are not known.
+ParameterUses parameter_uses(const Program& program);
+
 class ScriptParser {
   public:
     ScriptParser(Script& script, const ScriptOptions& options);
@@ -79,7 +85,8 @@ class ScriptParser {
     /// The parameter of the subroutine being read that has this name.
     std::optional<int> parameter_of(std::string_view name) const;
     /// What a call hands over that is known by what the parameter stands for alone: a picture, or what an action makes.
-    std::optional<Operand> made_for_parameter(const Pending& pending);
+    std::optional<Operand> made_for_parameter(const Pending& pending, const ParameterUses& uses);
+    void check_parameter_names();
     void check_frames(const Movement& movement);
     void resolve_pending();
 
@@ -109,7 +116,8 @@ class ScriptParser {
     int m_subroutine = 0;                                  ///< the subroutine that is being read
     std::set<int> m_defined_subroutines{0}, m_shaped{0};   ///< declared in full, not only named
     std::map<std::string, int, std::less<>> m_parameters;  ///< of the subroutine that is being read
-    std::map<std::pair<int, int>, std::string> m_uses;  ///< letters that a subroutine's parameter stands for
+    /// The names of parameters that nothing else had so far.
+    std::vector<std::pair<std::string, ScriptPosition>> m_parameter_names;
     std::vector<std::string> m_including;
     std::size_t m_included_bytes = 0;
     std::vector<Pending> m_pending;

@@ -178,6 +178,8 @@ class Page {
              chord_angles(outline, {0, 2 * std::numbers::pi}, m_view, kShareOfTol * m_options.tol))
             stroke.points.push_back(on_page(outline.on_screen(angle, m_view)));
         stroke.points.back() = stroke.points.front();
+        if (m_options.viewport)
+            stroke.points = clip_polygon(stroke.points, *m_options.viewport, kShareOfTol * m_options.tol);
         stroke.depth = outline.viewed.center.z;
         if (has_extent(stroke.points)) m_drawing.strokes.push_back(std::move(stroke));
     }
@@ -202,6 +204,7 @@ class Page {
 
     void add_dot(std::size_t i, const glm::dvec2& at, double depth) {
         if (at.x < m_box.low.x || at.y < m_box.low.y || at.x > m_box.high.x || at.y > m_box.high.y) return;
+        if (m_options.viewport && !m_options.viewport->holds(at)) return;
         Stroke stroke = stroke_of(StrokeKind::dot, i);
         stroke.points.assign(1, at);
         stroke.depth = depth;
@@ -279,7 +282,7 @@ class Page {
         stroke.depth = depth;
         for (std::size_t k = 0; k + 1 < points.size(); ++k) {
             glm::dvec2 a = points[k], b = points[k + 1];
-            if (!clip(a, b, m_box)) continue;
+            if (!clip(a, b, m_box) || (m_options.viewport && !clip(a, b, *m_options.viewport))) continue;
             if (stroke.points.empty() || stroke.points.back() != a) {
                 if (has_extent(stroke.points)) m_drawing.strokes.push_back(stroke);
                 stroke.points = {a};

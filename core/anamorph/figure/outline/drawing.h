@@ -4,12 +4,14 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/body/frame.h"
 #include "anamorph/figure/outline/outline_view.h"
+#include "anamorph/figure/outline/viewport.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/parameter/number_row.h"
 
@@ -40,6 +42,7 @@ struct DrawingOptions {
     double halo = kHaloRow.standard;             ///< the gap on either side of a nearer line, in pixels
     bool colors = false;                         ///< lines have the colors of the bodies; else black
     bool fill = false;                           ///< bodies are filled with their colors, from far to near
+    std::optional<Viewport> viewport;  ///< what is drawn of lines and fills; of lines, their middles
 };
 
 /// The kind of a stroke: what it stands for.
