@@ -164,6 +164,8 @@ void read_photo_sphere(const ImageSpec& spec, SourceFacts& facts) {
     // A whole one of square pixels is what it looks like; another one has 180 degrees from top to bottom.
     const bool is_whole = crop.w == crop.width && crop.h == crop.height && crop.x == 0 &&
                           facts.width * crop.h == facts.height * crop.w && crop.width == 2 * crop.height;
+    const bool is_said = crop.w != 0 || crop.h != 0 || crop.x != 0 || crop.y != 0;
+    facts.has_impossible_crop = is_said && !is_possible;
     if (is_possible && !is_whole) facts.crop = crop;
     const auto angle = [&](const char* name, std::optional<double>& to) {
         if (const double degrees = number(name); degrees != 0 && std::fabs(degrees) <= 360) to = degrees;

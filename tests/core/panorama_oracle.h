@@ -145,6 +145,10 @@ class LensOracle {
         m_scale = scale(v).x;
         m_cx = Real(v.width) / 2 + m_values[n - 2];
         m_cy = Real(v.height) / 2 + m_values[n - 1];
+        if (m_kind == ptlens) {
+            m_across = Real(m_values[3]) / v.height;
+            m_down = Real(m_values[4]) / v.width;
+        }
         // In steps up to where the radius falls; the top lies within one of them.
         const Real far = 4 * std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / m_unit;
         const Real step = far / 4096;
@@ -203,11 +207,20 @@ class LensOracle {
         return (low + high) / 2;
     }
     Real end() const { return m_end; }
+    /// Where the centre is observed, from the picture's middle.
+    Point<Real> centre(const View& v) const {
+        const Point<Real> p = observed(v, {Real(v.width) / 2, Real(v.height) / 2});
+        return {p.x - Real(v.width) / 2, p.y - Real(v.height) / 2};
+    }
     Real unit() const { return m_unit; }
 
     /// The pixel at which one of the ideal picture is observed; ideal() is the way back. The ideal one's
     /// centre is the picture's middle.
     Point<Real> observed(const View& v, const Point<Real>& ideal) const {
+        const Point<Real> p = observed_before_shear(v, ideal), middle{Real(v.width) / 2, Real(v.height) / 2};
+        return {p.x + m_across * (p.y - middle.y), p.y + m_down * (p.x - middle.x)};
+    }
+    Point<Real> observed_before_shear(const View& v, const Point<Real>& ideal) const {
         const Real x = (ideal.x - Real(v.width) / 2) / m_unit, y = (ideal.y - Real(v.height) / 2) / m_unit;
         const Real r = std::hypot(x, y), angle = std::atan2(y, x);
         if (!is_of_observed() && r > m_end) return {NAN, NAN};
@@ -228,7 +241,11 @@ class LensOracle {
         return {p.x * m_unit + m_cx, p.y * m_unit + m_cy};
     }
     Point<Real> ideal(const View& v, const Point<Real>& observed) const {
-        Real x = (observed.x - m_cx) / m_unit, y = (observed.y - m_cy) / m_unit;
+        // PanoTools shears about the middle, after the centre was shifted from it: Cramer's rule undoes it.
+        const Real u = observed.x - Real(v.width) / 2, w = observed.y - Real(v.height) / 2;
+        const Real area = 1 - m_across * m_down;
+        Real x = ((u - m_across * w) / area + Real(v.width) / 2 - m_cx) / m_unit;
+        Real y = ((w - m_down * u) / area + Real(v.height) / 2 - m_cy) / m_unit;
         if (m_kind == LensModel::Kind::ocam) {
             // OCamCalib's equations, solved by elimination.
             y = (y - m_values[5] * x) / (m_values[4] - Real(m_values[5]) * m_values[6]);
@@ -262,6 +279,7 @@ class LensOracle {
     LensModel::Kind m_kind;
     std::vector<double> m_values;
     Real m_unit = 1, m_scale = 1, m_cx = 0, m_cy = 0, m_end = 0;
+    Real m_across = 0, m_down = 0;  ///< PanoTools' shear: pixels across for one down, and down for one across
 };
 
 inline const LensOracle& lens_of(const View& v) {
@@ -343,8 +361,22 @@ inline Vector rotated(Vector v, const Orientation& look) {
     return v;
 }
 
+/// Where a camera elsewhere sees the point that a direction meets of the plane that is 1 away.
+inline Vector toward_plane(const Vector& v, const PlaneTransfer& transfer) {
+    Vector n{0, 0, 1};
+    turn(n.y, n.z, transfer.pitch);
+    turn(n.z, n.x, transfer.yaw);
+    const Real along = n.x * v.x + n.y * v.y + n.z * v.z;
+    if (along == 0) return v;  // in the limit
+    const Vector met{v.x / along, v.y / along, v.z / along};
+    const Real way = along < 0 ? -1 : 1;  // behind, the map goes on
+    return {way * (met.x - transfer.camera[0]), way * (met.y - transfer.camera[1]),
+            way * (met.z - transfer.camera[2])};
+}
+
 /// Turns back, by the inverses in the other order.
 inline Vector turned_back(Vector v, const Orientation& held) {
+    if (held.transfer) v = toward_plane(v, *held.transfer);
     turn(v.z, v.x, -held.yaw);
     turn(v.y, v.z, -held.pitch);
     turn(v.x, v.y, -held.roll);

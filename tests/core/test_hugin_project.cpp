@@ -61,7 +61,7 @@ TEST(HuginProject, ReadsPanoramaImagesAndLinks) {
     EXPECT_EQ(a.size, (Size{300, 200}));
     EXPECT_EQ(a.projection, Projection::fisheye);
     EXPECT_EQ(a.fov, 165.5);
-    EXPECT_EQ(a.lens, (std::array<double, 5>{0.01, -0.02, 0.003, 4, -5}));
+    EXPECT_EQ(a.lens, (std::array<double, 7>{0.01, -0.02, 0.003, 0, 0, 4, -5}));
     EXPECT_EQ(a.yaw, 10);
     EXPECT_EQ(a.pitch, -5);
     EXPECT_EQ(a.roll, 0.25);
@@ -132,19 +132,32 @@ TEST(HuginProject, KnowsTheProjectionsOfPanoTools) {
 TEST(HuginProject, SaysWhatMovesAndIsNotDrawn) {
     const auto with = [](const std::string& more) { return refused_of("i w3 h2 f0 v90 n\"a\" " + more); };
     EXPECT_EQ(with("g0 t0 TrX0 TrY-0 TrZ0.0 Te00 X0 Tpy20 Tpp-4 j3"), "");
-    EXPECT_EQ(with("g5"), "x.pto: row 1: g5: must be 0 (shear)");
-    EXPECT_EQ(with("t-0.1"), "x.pto: row 1: t-0.1: must be 0 (shear)");
-    EXPECT_EQ(with("TrX0.5"), "x.pto: row 1: TrX0.5: must be 0 (the camera stands still here)");
-    EXPECT_EQ(with("TrY1 TrZ0"), "x.pto: row 1: TrY1: must be 0 (the camera stands still here)");
-    EXPECT_EQ(with("TrZ-1e-9"), "x.pto: row 1: TrZ-1e-9: must be 0 (the camera stands still here)");
+    EXPECT_EQ(with("g5 t-0.1 TrX0.5 TrY1 TrZ-1e-9"), "");
     EXPECT_EQ(with("TiX3"), "x.pto: row 1: TiX3: must be 0 (tilt)");
     EXPECT_EQ(with("C1,2,3,4"), "x.pto: row 1: C1,2,3,4: must be 0 (what it means is not known here)");
     EXPECT_EQ(with("Q7"), "x.pto: row 1: Q7: must be 0 (what it means is not known here)");
     EXPECT_EQ(refused_of("i w3 h2 f0 v90 n\"a\"\nk i0 t1 p\"0 0 2 0 2 2\""),
               "x.pto: row 2: t1: must be 0, a mask that cuts a part of its own image out");
     // Of a linked value that of the other image counts.
-    const HuginProject linked = parsed("i w3 h2 f0 v90 g5 n\"a\"\ni w3 h2 f0 v90 g=0 n\"b\"");
-    EXPECT_EQ(linked.images[1].refused, "row 2: g=0: must be 0 (shear)");
+    const HuginProject linked = parsed("i w3 h2 f0 v90 TiZ5 n\"a\"\ni w3 h2 f0 v90 TiZ=0 n\"b\"");
+    EXPECT_EQ(linked.images[1].refused, "row 2: TiZ=0: must be 0 (tilt)");
+}
+
+TEST(HuginProject, CamerasMayStandBesideTheOthers) {
+    const HuginProject project = parsed(
+        "i w3 h2 f0 v90 g5 t-6 d1 e2 TrX0.5 TrY-2 TrZ3 Tpy20 Tpp-4 n\"a\"\n"
+        "i w3 h2 f0 v90 g=0 TrX=0 TrY0 TrZ0 Tpy7 n\"b\"\ni w3 h2 f0 v90 TrX0 TrY-0 TrZ0 Tpy9 n\"c\"");
+    EXPECT_THAT(project.images[0].lens, testing::ElementsAre(0, 0, 0, 5, -6, 1, 2));
+    ASSERT_TRUE(project.images[0].transfer);
+    EXPECT_THAT(project.images[0].transfer->camera, testing::ElementsAre(0.5, -2, -3));
+    EXPECT_EQ(project.images[0].transfer->yaw, 20);
+    EXPECT_EQ(project.images[0].transfer->pitch, -4);
+    EXPECT_EQ(project.images[1].lens[3], 5);
+    ASSERT_TRUE(project.images[1].transfer);
+    EXPECT_THAT(project.images[1].transfer->camera, testing::ElementsAre(0.5, 0, 0));
+    EXPECT_FALSE(project.images[2].transfer);
+    EXPECT_THAT(error_of("i w3 h2 f0 v90 TrX1e9x n\"a\""), HasSubstr("TrX1e9x"));
+    EXPECT_THAT(error_of("i w3 h2 f0 v90 Tppnan n\"a\""), HasSubstr("Tppnan"));
 }
 
 TEST(HuginProject, NamesWhatIsAboutColours) {

@@ -31,6 +31,7 @@ View view_of(const std::string& lens) {
 
 const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "ptlens:a=-0.02,b=0.05,c=-0.03,d=12.5,e=-40",
+                               "ptlens:a=0.01,b=-0.03,g=60,t=-45,d=12.5,e=-40",
                                "ptlens:b=-0.45",  // folds a little beyond the inner circle
                                "ptlens:a=-0.2",
                                "ptlens",
@@ -329,7 +330,7 @@ TEST(LensModel, RefusesWhatItCannotRead) {
     expect_refused("none:a=1", "none has no values");
     for (const char* text :
          {"ptlens:", "ptlens:k1=1", "ptlens:a=0.1,", "ptlens:=1", "ptlens: a=1", "ptlens:A=1"})
-        expect_refused(text, "must be followed by values of a, b, c, d, e, as in ptlens:a=0.1");
+        expect_refused(text, "must be followed by values of a, b, c, g, t, d, e, as in ptlens:a=0.1");
     expect_refused("ptlens:a=0.1,a=0.2", "a must be given once");
     for (const char* text : {"brown:k1", "brown:k1=", "brown:k1=x", "brown:k1=1x", "brown:k1=nan",
                              "brown:k1=inf", "brown:k1=1e7", "brown:k1=-2000000", "brown:k1= 1"})
@@ -361,6 +362,9 @@ TEST(Lens, RefusesToFoldWithinThePicture) {
                        "affine_c must be from 0.1 to 10, affine_d and affine_e from -1 to 1, and affine_c - "
                        "affine_d affine_e at least 0.01");
     expect_refused("ocam:a0=-400,affine_d=nan", "affine_d must be a number from");
+    for (const char* sheared : {"ptlens:g=2001", "ptlens:g=-1e6", "ptlens:t=-2001", "ptlens:g=999,t=1495"})
+        expect_refused(sheared, "g must be at most the picture's height and t its width");
+    expect_refused("ptlens:g=inf", "g must be a number from");
 }
 
 TEST(Lens, IsRefusedWherePicturesHaveNone) {

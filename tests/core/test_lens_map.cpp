@@ -38,14 +38,14 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "poly:k0=-0.02,k1=0.02,k2=-0.03,k3=0.01,k4=0.002",
                                "3de4:k1=-0.25,d=20,e=10",
                                "3de4:k1=0.1,k2=0.03",
+                               "ptlens:a=-0.01,b=0.02,g=12,t=-7,d=5,e=-3",
                                "division:k1=-0.3",
                                "division:k1=0.1,k2=0.03,d=9",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
-/// Where a lens's centre is, from the picture's middle, in pixels: its last two values.
+/// Where a lens's centre is, from the picture's middle, in pixels.
 Point<Real> centre_of(const View& view) {
-    const std::vector<double> values = chart_of(view).lens()->model().values;
-    return {values[values.size() - 2], values.back()};
+    return oracle::lens_of(view).centre(view);
 }
 
 /// The true source point of a target point; not a number where there is none.

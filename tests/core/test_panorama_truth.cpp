@@ -240,6 +240,9 @@ class Random {
                 : model.kind == ptlens
                     ? between(-0.05, 0.05)
                     : between(-0.06, 0.06) / std::pow(unit, 2.0 * static_cast<double>(i % 3 + 1));
+        if (model.kind == ptlens)
+            for (const std::size_t i : {3, 4})
+                model.values[i] = chance(0.5) ? 0 : between(-0.1, 0.1) * v.width;
         for (std::size_t i = 1; i <= 2; ++i)
             if (chance(0.3)) model.values[model.values.size() - i] = between(-0.1, 0.1) * v.width;
         return model;
@@ -292,6 +295,31 @@ TEST(PanoramaTruth, NoPixelIsOverItsBoundOfPartsAndOblongPixels) {
                 scene.scheme = random.scheme();
                 if (scene.source.width > 8 && scene.source.height > 48 && random.chance(0.2))
                     scene.source.centers = true;
+                pixels += expect_truth(scene).pixels;
+            }
+    EXPECT_GT(pixels, 400000);
+}
+
+TEST(PanoramaTruth, NoPixelIsOverItsBoundOfCamerasThatStandElsewhere) {
+    const char* const rounds = std::getenv("ANAMORPH_TRUTH_ROUNDS");
+    const char* const seed_text = std::getenv("ANAMORPH_TRUTH_SEED");
+    const unsigned seed = seed_text ? static_cast<unsigned>(std::atoi(seed_text)) : 2013;
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    constexpr double kTols[] = {1, 0.01, 1e-4, 1e-6, 0};
+    std::int64_t pixels = 0;
+    for (int round = 0; round < (rounds ? std::atoi(rounds) : 2); ++round)
+        for (const Projection from : kAll)
+            for (const Projection to : kAll) {
+                Scene scene{random.view(from, true), random.view(to, false), {}, kTols[random.integer(0, 4)]};
+                scene.look = random.look();
+                if (random.chance(0.7)) scene.held = random.orientation();
+                const double far = random.chance(0.2) ? 30 : random.chance(0.3) ? 3 : 0.4;
+                scene.held.transfer = PlaneTransfer{
+                    {random.between(-far, far), random.between(-far, far), random.between(-far, far)},
+                    random.chance(0.3) ? 0 : random.angle(),
+                    random.chance(0.3) ? 0 : random.between(-90, 90)};
+                scene.scheme = random.scheme();
                 pixels += expect_truth(scene).pixels;
             }
     EXPECT_GT(pixels, 400000);

@@ -216,6 +216,127 @@ TEST_F(Cameras, PartsMayBeStoredTurned) {
               0);
 }
 
+// A part that cannot be one is not taken for one, and that is said.
+TEST_F(Cameras, PartsThatCannotBeAreSaidNotToBeUsed) {
+    const auto source_of = [](const std::string& name, const std::string& keys) {
+        return says(name + ".pano?from=equirectangular&to=rectilinear&fov=60&size=32x24" + keys,
+                    "anamorph:from");
+    };
+    const std::string said = says("whole.exr.pano?size=60x40&" + to, "panoramaProjection"),
+                      fov = said.substr(said.find("fov=") + 4,
+                                        said.find(' ', said.find("fov=")) - said.find("fov=") - 4);
+    std::string keys = "&srcfov=" + fov + "&from=" + said.substr(0, said.find(' '));
+    if (said.find("vfov=") != std::string::npos && to.find("fov=150") != std::string::npos)
+        keys += "&srcvfov=80&srcd=0.5";
+    const std::string view = "&to=fisheye&fov=90&size=40x30&yaw=13&pitch=-20&tol=0&output=stmap";
+    EXPECT_EQ(largest_difference(read_floats("seen.exr.pano?srcyaw=0" + view),
+                                 read_floats("seen.exr.pano?srcyaw=0" + keys + view)),
+              0);
+}
+}
+
+TEST_F(Cameras, PosesAreTheSourcesAngles) {
+    ImageBuf image = part(0, 0, kWide, kHigh);
+    image.specmod().attribute("GPano:ProjectionType", "equirectangular");
+    image.specmod().attribute("GPano:PoseHeadingDegrees", 30.0f);
+    image.specmod().attribute("GPano:PosePitchDegrees", -7.5f);
+    image.specmod().attribute("GPano:PoseRollDegrees", 12);
+    write_image(image, "posed.exr");
+    EXPECT_TRUE(read_floats("posed.exr.pano?fov=60&size=50x40") ==
+                read_floats("whole.exr.pano?fov=60&size=50x40&srcyaw=30&srcpitch=-7.5&srcroll=12"));
+    EXPECT_TRUE(read_floats("posed.exr.pano?fov=60&size=50x40&srcyaw=0&srcroll=3") ==
+                read_floats("whole.exr.pano?fov=60&size=50x40&srcpitch=-7.5&srcroll=3"));
+    // A part that was tilted: the tilt is that of the whole.
+    ImageBuf tilted = part(40, 30, 160, 100);
+    say_part(tilted, 40, 30, 160, 100);
+    tilted.specmod().attribute("GPano:PosePitchDegrees", 20.0f);
+    write_image(tilted, "tilted.exr");
+    const std::string view = "&fov=30&size=50x40&yaw=-50&pitch=25&tol=0.00001";
+    EXPECT_LT(largest_difference(read_floats("tilted.exr.pano?pixels=edges" + view),
+                                 read_floats("whole.exr.pano?srcpitch=20" + view)),
+              2e-4);
+}
+
+// A whole sphere squeezed into a square, and back.
+TEST_F(Cameras, PixelsNeedNotBeSquare) {
+    ASSERT_EQ(run("oiiotool whole.exr --resize:filter=box 160x160 -o squeezed.exr").status, 0);
+    const std::string look = "&fov=70&size=90x70&yaw=150&pitch=50&filter=bilinear";
+    EXPECT_LT(mean_difference(read_floats("squeezed.exr.pano?from=latlong&srcvfov=180" + look),
+                              read_floats("whole.exr.pano?from=latlong" + look)),
+              0.02);
+    // What is drawn so says so, and is read so.
+    const std::string square = "whole.exr.pano?to=latlong&vfov=180&size=160x160";
+    EXPECT_EQ(says(square, "panoramaProjection"), "equirectangular fov=360 vfov=180");
+    ASSERT_EQ(run("oiiotool '" + square + "' -o square.exr").status, 0);
+    EXPECT_LT(mean_difference(read_floats("square.exr.pano?wrap=automatic" + look),
+                              read_floats("whole.exr.pano?from=latlong" + look)),
+              0.02);
+    // Where things stand is no matter of sampling.
+    const std::vector<float> uv = read_floats("squeezed.exr.pano?from=latlong&srcvfov=180&output=stmap" +
+                                              look),
+                             whole = read_floats("whole.exr.pano?from=latlong&output=stmap" + look);
+    EXPECT_LT(largest_difference(uv, whole), 2e-4);
+}
+
+// A picture without a size is as fine as the shorter sides of its source's pixels.
+TEST_F(Cameras, DefaultSizesSeeOblongPixels) {
+    ASSERT_EQ(run("oiiotool whole.exr --resize 64x256 -o tall.exr").status, 0);
+    const auto input = open("tall.exr.pano?from=latlong&srcvfov=180&to=equirectangular");
+    ASSERT_TRUE(input);
+    EXPECT_EQ(input->spec().width, 512);
+    EXPECT_EQ(input->spec().height, 256);
+}
+
+// The place of a part is turned with its picture, also where its numbers are written as floats.
+TEST_F(Cameras, PartsMayBeStoredTurned) {
+    ImageBuf image = part(60, 40, 160, 80);
+    write_image(image, "part.exr");
+    ImageBuf turned = OIIO::ImageBufAlgo::rotate180(image);
+    turned.specmod().attribute("Orientation", 3);
+    // Of the stored picture, which is upside down: as far from the other corner.
+    say_part(turned, kWide - 60 - 160, kHigh - 40 - 80, 160, 80);
+    for (const char* name : {"FullPanoWidth", "FullPanoHeight", "CroppedAreaLeft", "CroppedAreaTop",
+                             "CroppedAreaImageWidth", "CroppedAreaImageHeight"}) {
+        const std::string key = std::string("GPano:") + name + "Pixels";
+        turned.specmod().attribute(key, static_cast<float>(turned.spec().get_int_attribute(key)));
+    }
+    write_image(turned, "turned.exr");
+    const std::string view = "&fov=40&size=40x30&yaw=-20&tol=0.0001";
+    EXPECT_EQ(largest_difference(read_floats("turned.exr.pano?srcyaw=0" + view),
+                                 read_floats("part.exr.pano?from=latlong&srccrop=320x160+60+40" + view)),
+              0);
+}
+
+// A part that cannot be one is not taken for one, and that is said.
+TEST_F(Cameras, PartsThatCannotBeAreSaidNotToBeUsed) {
+    const auto source_of = [](const std::string& name, const std::string& keys) {
+        return open_recipe(name + ".pano?from=equirectangular&to=rectilinear&fov=60&size=32x24" + keys)
+            ->spec()
+            .get_string_attribute("anamorph:from")
+            .string();
+    };
+    const std::string said = "not the part that GPano:CroppedArea... says, which cannot be";
+    int number = 0;
+    for (const auto& [name, value] : {std::pair{"FullPanoWidthPixels", 0.0f},
+                                      {"FullPanoHeightPixels", -1.0f},
+                                      {"CroppedAreaLeftPixels", 2147483648.0f},
+                                      {"CroppedAreaTopPixels", -1.0f},
+                                      {"CroppedAreaImageWidthPixels", 321.0f},
+                                      {"CroppedAreaImageHeightPixels", NAN}}) {
+        ImageBuf image = part(60, 40, 160, 80);
+        say_part(image, 60, 40, 160, 80);
+        image.specmod().attribute(std::string("GPano:") + name, value);
+        const std::string file = "impossible" + std::to_string(number++) + ".exr";
+        write_image(image, file);
+        EXPECT_THAT(source_of(file, ""), HasSubstr(said)) << name;
+        EXPECT_THAT(source_of(file, "&srccrop=none"), testing::Not(HasSubstr(said))) << name;
+        EXPECT_THAT(source_of(file, "&srccrop=320x160+60+40"), testing::Not(HasSubstr(said))) << name;
+    }
+    ImageBuf image = part(60, 40, 160, 80);
+    write_image(image, "unsaid.exr");
+    EXPECT_THAT(source_of("unsaid.exr", ""), testing::Not(HasSubstr(said)));
+}
+
 /// A JPEG file with XMP, as cameras write it.
 void write_jpeg(const ImageBuf& image, const std::string& name, const std::string& xmp) {
     write_image(image, "plain.jpg");
@@ -350,8 +471,10 @@ TEST_F(Cameras, SayWhatIsWrong) {
     ImageBuf image = part(0, 0, 160, 80);
     say_part(image, 10, 100, 160, 80);
     write_image(image, "wrong.exr");
-    EXPECT_EQ(says("wrong.exr.pano?size=8", "anamorph:from"),
-              "equirectangular (as GPano:ProjectionType says)");
+    EXPECT_EQ(
+        says("wrong.exr.pano?size=8", "anamorph:from"),
+        "equirectangular (as GPano:ProjectionType says, not the part that GPano:CroppedArea... says, which "
+        "cannot be)");
 }
 
 TEST_F(Cameras, AreOnePicture) {

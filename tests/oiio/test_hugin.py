@@ -74,9 +74,31 @@ def fold(image):
     return min([root.real for root in roots if abs(root.imag) < 1e-12 and root.real > 0], default=math.inf)
 
 
+def moves(image):
+    return any(image[key] for key in ("TrX", "TrY", "TrZ"))
+
+
+def seen_from_elsewhere(rays, image):
+    """Rays from a camera elsewhere to what the panorama's sees on a plane 1 away, none where it sees none, and how far these look
+    toward the plane. TrZ counts backward."""
+    n, place = rotation(image["Tpy"], image["Tpp"], 0) @ (0, 0, 1), np.array((image["TrX"], image["TrY"], -image["TrZ"]))
+    along = rays @ n
+    with np.errstate(all="ignore"):
+        seen = rays / along[..., None] - place
+        toward = (rays - along[..., None] * place) @ n * np.sign(1 - n @ place)
+        toward /= np.linalg.norm(rays - along[..., None] * place, axis=-1)
+    seen[along <= 0] = np.nan
+    return seen, toward
+
+
+def far_from_horizon(rays, image):
+    """Is it farther than a few pixels to where an image looks past its plane?"""
+    return np.abs(seen_from_elsewhere(rays, image)[1]) > 0.05 if moves(image) else np.ones(rays.shape[:-1], bool)
+
+
 def image_points(rays, image):
     """The source points of rays of the panorama, in pixels of an image; not finite where there is none."""
-    q = rays @ rotation(image["y"], image["p"], image["r"])
+    q = (seen_from_elsewhere(rays, image)[0] if moves(image) else rays) @ rotation(image["y"], image["p"], image["r"])
     x, y, z = q[..., 0], q[..., 1], q[..., 2]
     a, width, height = math.radians(image["v"]), image["w"], image["h"]
     with np.errstate(all="ignore"):
@@ -98,7 +120,8 @@ def image_points(rays, image):
         r = np.hypot(u, v) / (min(width, height) / 2)
         u[r >= fold(image)] = np.nan
         k = image["a"] * r**3 + image["b"] * r**2 + image["c"] * r + 1 - image["a"] - image["b"] - image["c"]
-        return u * k + image["d"] + width / 2, v * k + image["e"] + height / 2
+        u, v = u * k + image["d"], v * k + image["e"]
+        return u + image["g"] / height * v + width / 2, v + image["t"] / width * u + height / 2
 
 
 def shown(image, x, y, margin=0.0):
@@ -116,15 +139,20 @@ def shown(image, x, y, margin=0.0):
 # ------------------------------------------------------------------------------------------------------------
 
 
-def image(name, f, width, height, fov, y=0.0, p=0.0, r=0.0, lens=(0.0,) * 5, crop=None, links=None):
-    made = dict(zip("abcde", lens), n=name, f=f, w=width, h=height, v=fov, y=y, p=p, r=r, S=crop)
+PLACE = ("TrX", "TrY", "TrZ", "Tpy", "Tpp")
+
+
+def image(name, f, width, height, fov, y=0.0, p=0.0, r=0.0, lens=(0.0,) * 5, crop=None, links=None, shear=(0.0, 0.0),
+          place=(0.0,) * 5):
+    made = dict(zip("abcde", lens), n=name, f=f, w=width, h=height, v=fov, y=y, p=p, r=r, S=crop, g=shear[0], t=shear[1])
+    made.update(zip(PLACE, place))
     made["links"] = links or {}
     return made
 
 
 def row(made):
-    text = "i" + "".join(f" {key}{made['links'].get(key, made[key])!s}" for key in "wh f v a b c d e y p r".replace(" ", ""))
-    text += " Ra0 Rb0 Rc0 Rd0 Re0 Eev0 Er1 Eb1 TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0 g0 t0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 Vm5"
+    text = "i" + "".join(f" {key}{made['links'].get(key, made[key])!s}" for key in [*"whfvabcdegtypr", *PLACE])
+    text += " Ra0 Rb0 Rc0 Rd0 Re0 Eev0 Er1 Eb1 j0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 Vm5"
     if made["S"]:
         text += " S" + ",".join(map(str, made["S"]))
     return text + f' n"{made["n"]}"\n'
@@ -188,6 +216,19 @@ def random_images(rng, name):
                     rng.uniform(-90, 90), rng.uniform(-180, 180), lens)
 
 
+def moved_images(rng, name):
+    """Images with shear, and of cameras that stand elsewhere; some look past the plane that they see."""
+    for f, least, most in ((0, 30, 110), (3, 90, 200), (10, 60, 150)):
+        lens = [rng.uniform(-0.01, 0.01) for _ in "abc"] + [rng.uniform(-9, 9), rng.uniform(-9, 9)]
+        yield image(name, f, 400, 300, rng.uniform(least, most), rng.uniform(-30, 30), rng.uniform(-30, 30),
+                    rng.uniform(-180, 180), lens, shear=(rng.uniform(-20, 20), rng.uniform(-20, 20)))
+        near, far = ([rng.uniform(-size, size) for _ in "xyz"] for size in (0.3, 1.5))
+        plane = [rng.uniform(-50, 50), rng.uniform(-30, 30)]
+        for place in (near + [0, 0], near + plane, far + plane):
+            yield image(name, f, 400, 300, rng.uniform(least, most), rng.uniform(-40, 40), rng.uniform(-40, 40),
+                        rng.uniform(-180, 180), lens, shear=(rng.uniform(-9, 9), 0), place=place)
+
+
 PANORAMAS = [(0, 400, 300, 110), (1, 500, 300, 200), (2, 512, 256, 360), (2, 300, 200, 150.5), (3, 300, 260, 210),
              (4, 300, 300, 220), (5, 400, 300, 250), (7, 512, 256, 360), (9, 300, 300, 250), (14, 300, 300, 180),
              (15, 300, 280, 250), (21, 512, 256, 360)]
@@ -201,14 +242,16 @@ class Source(PictureTest):
 
     def check(self, made, panorama, what):
         pixels = ours(write_project(panorama, [made]), "image=0")
-        x, y = image_points(panorama_rays(*panorama), made)
-        inside = shown(made, x, y, 1.5)
+        rays = panorama_rays(*panorama)
+        x, y = image_points(rays, made)
+        clear = far_from_horizon(rays, made)
+        inside = shown(made, x, y, 1.5) & clear
         found = distance(pixels, x, y)[inside]
         if found.size:
             self.assertLess(found.max(), 4e-4, what)
             self.assertGreater(pixels[..., 3][inside].min(), 0.9999, what)
         # What lies beyond is not drawn.
-        beyond = ~shown(made, x, y, -1.5)
+        beyond = ~shown(made, x, y, -1.5) & clear
         if beyond.any():
             self.assertEqual(pixels[beyond].max(), 0, what)
         return found.size
@@ -219,6 +262,19 @@ class Source(PictureTest):
         compared = sum(self.check(made, panorama, f"seed {SEED}: {row(made)} in {panorama}")
                        for panorama in PANORAMAS for made in random_images(rng, self.at))
         self.assertGreater(compared, 500000)
+
+    def test_shear_and_cameras_elsewhere(self):
+        rng = random.Random(SEED + 2)
+        print("seed", SEED)
+        compared = sum(self.check(made, panorama, f"seed {SEED}: {row(made)} in {panorama}")
+                       for panorama in PANORAMAS for made in moved_images(rng, self.at))
+        self.assertGreater(compared, 500000)
+
+    def test_images_that_look_past_their_plane_have_no_stmap(self):
+        ahead, past = (write_project(PANORAMAS[2], [image(self.at, 0, 400, 300, 60, y, place=(0.2, 0, 0, 0, 0))]) for y in (0, 70))
+        self.assertGreater(np.isfinite(read(ahead + ".pano?image=0&output=stmap")[..., 0]).sum(), 1000)
+        with self.assertRaisesRegex(Exception, "looks away from its plane"):
+            read(past + ".pano?image=0&output=stmap")
 
     def test_upright_image(self):
         lens = (0.01, -0.03, 0.02, 5, -7)
@@ -424,15 +480,17 @@ class Nona(PictureTest):
         """The number of pixels compared, and the largest distance."""
         theirs, project = self.nona(panorama, made)
         mine = ours(project, "image=0")
-        x, y = image_points(panorama_rays(*panorama), made)
+        rays = panorama_rays(*panorama)
+        x, y = image_points(rays, made)
+        clear = far_from_horizon(rays, made)
         # Two pixels inside: what lies at the edge is each program's own affair.
-        inside = shown(made, x, y, 2)
+        inside = shown(made, x, y, 2) & clear
         # Some pixels nona leaves out where its picture comes back to itself.
         seen = theirs[..., 3] > 0.99
         self.assertLessEqual((inside & ~seen).sum(), 0.01 * inside.sum(), f"nona left a part out: {row(made)}")
         inside &= seen
         found = distance(theirs, *points(mine))[inside]
-        beyond = ~shown(made, x, y, -2)
+        beyond = ~shown(made, x, y, -2) & clear
         self.assertEqual(theirs[..., 3][beyond].max() if beyond.any() else 0, 0, row(made))
         return found.size, found.max() if found.size else 0.0
 
@@ -451,6 +509,21 @@ class Nona(PictureTest):
             largest = max(largest, of_panorama)
         print(f"seed {SEED}: {pixels} pixels, largest distance {largest:.2g} source pixels", flush=True)
         self.assertGreater(pixels, 500000)
+
+    def test_shear_and_cameras_elsewhere(self):
+        rng = random.Random(SEED + 3)
+        largest, pixels = 0.0, 0
+        for panorama in PANORAMAS[::3]:
+            for made in moved_images(rng, self.at):
+                # nona 2021 fails where it finds no part of an image.
+                if not shown(made, *image_points(panorama_rays(*panorama), made), 2).any():
+                    continue
+                with self.subTest(seed=SEED, panorama=panorama, image=row(made)):
+                    count, found = self.check(made, panorama)
+                    pixels, largest = pixels + count, max(largest, found)
+                    self.assertLess(found, self.LARGEST)
+        print(f"seed {SEED}: {pixels} pixels, largest distance {largest:.2g} source pixels", flush=True)
+        self.assertGreater(pixels, 100000)
 
     def test_crops(self):
         for f in (0, 1, 2, 3, 8, 10, 21):

@@ -195,8 +195,15 @@ TEST_F(Projects, SayWhatIsWrongWithThem) {
                 HasSubstr("bad.pto: image 0 (left.exr): lens"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 S64,70,0,48 n\"left.exr\""),
                 HasSubstr("image 0 (left.exr): S: must have pixels of the image, 64x48"));
-    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 TrX1 n\"left.exr\""),
-                HasSubstr("bad.pto: row 2: TrX1: must be 0"));
+    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 TiX1 n\"left.exr\""),
+                HasSubstr("bad.pto: row 2: TiX1: must be 0"));
+    // Cameras too far away, and in the plane 1 ahead.
+    for (const char* place : {"TrX1e7", "TrZ-1", "TrX1 Tpy90", "TrY-3 TrZ4 Tpp0 Tpy180 TrZ1"})
+        EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 " + place + " n\"left.exr\""),
+                    testing::AnyOf(HasSubstr("TrX, TrY, TrZ"), HasSubstr("must be given once")))
+            << place;
+    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 g49 n\"left.exr\""),
+                HasSubstr("g must be at most the picture's height"));
     EXPECT_THAT(error_of(kLeft), HasSubstr("to is not given and \"bad.pto\" has no row p"));
     EXPECT_THAT(error_of("p f12 w90 h80 v90\n" + kLeft),
                 HasSubstr("to is not given: bad.pto: row 1: f12: must be one of"));

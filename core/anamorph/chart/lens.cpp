@@ -17,7 +17,7 @@ using lens_formula::Series;
 
 // How far a lens reaches, in distances of the picture's farthest corner: in the observed and in the ideal picture.
 constexpr double kObservedReach = 4, kIdealReach = 16;
-// What OCamCalib's affine part may be: sensors are next to square to their lenses.
+// What OCamCalib's affine part and PanoTools' shear may be: sensors are next to square to their lenses.
 constexpr double kLeastStretch = 0.1, kMostStretch = 10, kMostShear = 1, kLeastArea = 0.01;
 
 struct KindOfLens {
@@ -29,7 +29,7 @@ const std::vector<KindOfLens>& kinds() {
     using enum LensModel::Kind;
     static const std::vector<KindOfLens> all = {
         {none, "none", {}},
-        {ptlens, "ptlens", {"a", "b", "c", "d", "e"}},
+        {ptlens, "ptlens", {"a", "b", "c", "g", "t", "d", "e"}},
         {brown, "brown", {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "s1", "s2", "s3", "s4", "d", "e"}},
         {three_de4, "3de4", {"k1", "k2", "d", "e"}},
         {kb4, "kb4", {"k1", "k2", "k3", "k4", "d", "e"}},
@@ -170,7 +170,7 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     belongs_to(kb4, Lensed::equidistant, "fisheye");
     belongs_to(ocam, Lensed::stereographic, "stereographic");
     set_terms();
-    if (model.kind == ocam) set_shear(model.values[4], model.values[5], model.values[6], parameter);
+    set_shear(plane, parameter);
     const long double smaller = std::min(plane.half_width, plane.half_height);
     const bool by_diagonal = model.kind == three_de4 || model.kind == division;
     const bool by_side = model.kind == ptlens || model.kind == poly;
@@ -180,14 +180,11 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
                                                   : 1;
     // Twice the tangent of half of the angle, in pixels.
     if (model.kind == ocam) m_terms.over[0] = Constant(2 / plane.per_x);
-    const long double d = model.values[model.values.size() - 2] * plane.per_x,
-                      e = model.values[model.values.size() - 1] * plane.per_y;
+    set_centre(plane);
+    const long double d = m_terms.shift_x.precise(), e = m_terms.shift_y.precise();
     m_terms.unit = unit == 1 ? Constant(1, 0) : Constant(unit);
     m_terms.per_unit = unit == 1 ? Constant(1, 0) : Constant(1 / unit);
     m_terms.has_unit = unit != 1;
-    m_terms.shift_x = Constant(d);
-    m_terms.shift_y = Constant(e);
-    m_terms.shifted = d != 0 || e != 0;
     const auto in_units = [&](long double length) { return static_cast<double>(length / unit); };
     const double corner = in_units(farthest_corner(plane, d, e));
     const bool folds = set_ends(corner);
@@ -219,27 +216,65 @@ long double Lens::farthest_corner(const Plane& plane, long double d, long double
     return farthest;
 }
 
-/// The matrix (1 e; d c), its inverse, and their largest singular values.
-void Lens::set_shear(double c, double d, double e, const std::string& parameter) {
-    const long double area = static_cast<long double>(c) - static_cast<long double>(d) * e;
+/// PanoTools shears about the picture's middle what it has shifted before.
+void Lens::set_centre(const Plane& plane) {
+    const std::vector<double>& v = m_model.values;
+    const long double d = v[v.size() - 2] * plane.per_x, e = v[v.size() - 1] * plane.per_y;
+    const bool moves = m_terms.sheared && m_model.kind == LensModel::Kind::ptlens;
+    const long double across = moves ? e * m_terms.shear[1].precise() : 0,
+                      down = moves ? d * m_terms.shear[2].precise() : 0;
+    // Of either part what a Constant may be off, and what the entry is.
+    const auto sum = [](long double own, long double other) {
+        const auto size = static_cast<double>(std::fabs(own) + 4 * std::fabs(other));
+        const double error = 32 * Rounded<long double>::kUnit * size;
+        // What cancels is known no better than that it is small.
+        return Constant(own + other == 0 ? error * 0x1p-20L : own + other, 2 * error);
+    };
+    m_terms.shift_x = sum(d, across);
+    m_terms.shift_y = sum(e, down);
+    m_terms.shifted = m_terms.shift_x.value() != 0 || m_terms.shift_y.value() != 0;
+}
+
+/// The affine part of a model as the matrix (1 e; d c).
+Lens::Affine Lens::affine_of(const Plane& plane) const {
+    const std::vector<double>& v = m_model.values;
+    if (m_model.kind == LensModel::Kind::ocam) return {v[4], v[5], v[6], true};
+    // g pixels across at a distance of the picture's height, and t down at its width.
+    if (m_model.kind == LensModel::Kind::ptlens)
+        return {1, v[4] * plane.per_y / (2 * plane.half_width), v[3] * plane.per_x / (2 * plane.half_height),
+                false};
+    return {};
+}
+
+/// The matrix, its inverse, and their largest singular values.
+void Lens::set_shear(const Plane& plane, const std::string& parameter) {
+    const auto [c, d, e, is_exact] = affine_of(plane);
+    const long double area = c - d * e;
     if (!(c >= kLeastStretch && c <= kMostStretch && std::fabs(d) <= kMostShear &&
           std::fabs(e) <= kMostShear && area >= kLeastArea))
         throw Error(parameter, m_model.text(),
-                    "affine_c must be from " + brief(kLeastStretch) + " to " + brief(kMostStretch) +
-                        ", affine_d and affine_e from " + brief(-kMostShear) + " to " + brief(kMostShear) +
-                        ", and affine_c - affine_d affine_e at least " + brief(kLeastArea));
+                    m_model.kind == LensModel::Kind::ocam
+                        ? "affine_c must be from " + brief(kLeastStretch) + " to " + brief(kMostStretch) +
+                              ", affine_d and affine_e from " + brief(-kMostShear) + " to " +
+                              brief(kMostShear) + ", and affine_c - affine_d affine_e at least " +
+                              brief(kLeastArea)
+                        : "g must be at most the picture's height and t its width, and g t at most " +
+                              brief(1 - kLeastArea) + " of their product");
     m_terms.sheared = c != 1 || d != 0 || e != 0;
     if (!m_terms.sheared) return;
-    const double shear[4] = {1, e, d, c};
+    const long double shear[4] = {1, e, d, c};
     const long double unshear[4] = {c / area, -e / area, -d / area, 1 / area};
-    // The area is off by two roundings of c + |d e|, which with area >= kLeastArea are at most 2 (10 + 1) / 0.01 of it.
-    constexpr double kOff = 2 * (kMostStretch + kMostShear * kMostShear) / kLeastArea + 2;
+    // Two lengths of the plane, each off by what a Constant may be, and a few roundings.
+    const double off = is_exact ? 0 : 80;
+    // The area is off by two roundings of c + |d e|, and by what d and e are off; an entry over it by one more.
+    const double area_off = static_cast<double>((c + std::fabs(d * e)) / area) * (2 + 2 * off);
+    constexpr double kUnit = Rounded<long double>::kUnit;
     double square = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        m_terms.shear[i] = Constant(shear[i], 0);
+        m_terms.shear[i] = Constant(shear[i], off * kUnit * static_cast<double>(std::fabs(shear[i])));
         const double size = static_cast<double>(std::fabs(unshear[i]));
-        m_terms.unshear[i] = Constant(unshear[i], kOff * Rounded<long double>::kUnit * size);
-        square += shear[i] * shear[i];
+        m_terms.unshear[i] = Constant(unshear[i], (area_off + off + 2) * (1 + 0x1p-20) * kUnit * size);
+        square += m_terms.shear[i].value() * m_terms.shear[i].value();
     }
     // Of singular values a >= b, a^2 + b^2 is the sum of the squares and a b the determinant. Where they are next to equal a
     // difference of 2^-26 of them is lost, as it is squared.

@@ -6,7 +6,8 @@
 // Models, with u a point about the lens's centre, r = |u|, and v what becomes of it:
 //
 //   ptlens   ideal to observed, v = u (a r^3 + b r^2 + c r + 1 - a - b - c); PanoTools and Hugin. Unit: half of the
-//            picture's smaller side. For projections with an axis.
+//            picture's smaller side. For projections with an axis. What is observed is (x + g y / height, y + t x / width) of
+//            the picture's v about its middle, PanoTools' shear.
 //   brown    ideal to observed, v = u (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
 //            + (2 p1 x y + p2 (r^2 + 2 x^2), p1 (r^2 + 2 y^2) + 2 p2 x y) + (s1 r^2 + s2 r^4, s3 r^2 + s4 r^4);
 //            Brown 1966 with a thin prism (Weng, Cohen and Herniou 1992), OpenCV. Unit: the focal length. For rectilinear
@@ -229,8 +230,14 @@ class Lens {
   private:
     void set_terms();
     long double farthest_corner(const Plane& plane, long double d, long double e) const;
-    /// `c`, `d` and `e` of OCamCalib; throws Error naming `parameter` where they squeeze a picture too much.
-    void set_shear(double c, double d, double e, const std::string& parameter);
+    struct Affine {
+        long double c = 1, d = 0, e = 0;
+        bool is_exact = true;
+    };
+    Affine affine_of(const Plane& plane) const;
+    void set_centre(const Plane& plane);
+    /// Throws Error naming `parameter` where the affine part squeezes a picture too much.
+    void set_shear(const Plane& plane, const std::string& parameter);
     /// Returns whether the lens ends because it folds. `corner`: the farthest observed point of the picture.
     bool set_ends(double corner);
     /// The condition number of radial_at() over an interval: the magnitude to which its rounding is relative, over its value.

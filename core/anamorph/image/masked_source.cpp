@@ -55,6 +55,8 @@ void SourceMask::write_row(int y, int x0, int x1, unsigned char* counts) const n
             texel = (texel & 1) != 0 && !is_inside ? 1 : 0;
         }
     }
+    for (int x = x0; shows && x < x1; ++x)
+        if (counts[x - x0] != 0 && !shows(x + 0.5, y + 0.5)) counts[x - x0] = 0;
 }
 
 void MaskedSource::write(const float* from, bool counts, float* to) const noexcept {

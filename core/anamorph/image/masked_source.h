@@ -2,6 +2,7 @@
 // An image of which a part is cut out: what is left has alpha.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ struct SourceMask {
     std::optional<Circle> circle = {};
     /// Polygons that are cut out, each by the even-odd rule.
     std::vector<std::vector<Point<double>>> holes = {};
+    /// Whether a point of the image is shown, if not everything is. It does not throw, and is asked in any order.
+    std::function<bool(double x, double y)> shows = {};
 
     /// Writes 1 for each of the texels [x0, x1) of a row that counts, and 0 for the others.
     void write_row(int y, int x0, int x1, unsigned char* counts) const noexcept;

@@ -30,7 +30,8 @@ ParameterTable make_lens_table() {
             "undistort: the source was taken through the lens, and the picture is free of it; distort: "
             "the other way round, with the picture of the size that the lens is of"),
         text("lens",
-             "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2, s1 to s4), 3de4 "
+             "MODEL:name=value,name=value with ptlens (a, b, c, g, t), brown (k1 to k6, p1, p2, s1 to s4), "
+             "3de4 "
              "(k1, k2), "
              "kb4 (k1 to k4), division (k1, k2), poly (k0 to k4) or ocam (a0, a2, a3, a4, affine_c to "
              "affine_e), and d, e, the "

@@ -47,6 +47,8 @@ struct SourceFacts {
     std::optional<LensModel> lens = {};
     /// The part of a panorama that it says it is, of an equirectangular one of 180 degrees from top to bottom.
     std::optional<PanoramaCrop> crop = {};
+    /// Does its metadata say a part that cannot be one (GPano:CroppedArea...)? Then it is not used.
+    bool has_impossible_crop = false;
     /// How it says that its camera was held, in degrees.
     std::optional<double> yaw = {}, pitch = {}, roll = {};
     /// The focal length of the camera it was taken with, in pixels, and what says so.

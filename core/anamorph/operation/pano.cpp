@@ -177,7 +177,8 @@ ParameterTable make_pano_table() {
         text("srclens",
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
-             "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
+             "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c, g, t), "
+             "brown "
              "(k1 to k6, p1, p2, s1 to s4), 3de4 (k1, k2), kb4 (k1 to k4), division (k1, k2), "
              "poly (k0 to k4) or ocam (a0, a2, a3, a4, affine_c to affine_e), and d, e, the shift of its "
              "centre in pixels, or "
@@ -639,6 +640,8 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
                is_said = facts.fov && facts.projection == from;
     CutView cut{fov, 0, {}};
     std::string whole;
+    if (facts.has_impossible_crop && !is_given(values, "srccrop"))
+        whole = ", not the part that GPano:CroppedArea... says, which cannot be";
     if (const std::optional<PanoramaCrop> crop = source_crop(values, facts, from)) {
         if (spacing == PixelSpacing::centers)
             throw Error("pixels", "centers", "must be edges of a part of a panorama");

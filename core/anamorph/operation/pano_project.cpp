@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "anamorph/chart/chart_numbers.h"
 #include "anamorph/image/layered_picture.h"
 #include "anamorph/image/masked_source.h"
 #include "anamorph/operation/film.h"
@@ -54,7 +55,8 @@ struct ProjectImage {
     Chart chart;
     Orientation held;
     SourceMask mask;
-    bool is_cut;  ///< has the mask anything that is not drawn?
+    bool is_cut;         ///< has the mask anything that is not drawn?
+    bool sees_no_plane;  ///< does a part of it look away from the plane of its transfer?
 
     Box shown() const { return mask.rectangle.value_or(Box{0, 0, chart.width(), chart.height()}); }
 };
@@ -74,17 +76,55 @@ SourceMask mask_of(const HuginImage& image) {
     return mask;
 }
 
+/// How far a ray of an image looks toward the plane that its camera's transfer is about; where that is not positive it meets none.
+class TowardPlane {
+  public:
+    TowardPlane(const Chart& chart, const HuginImage& image) : m_chart(chart) {
+        const glm::dvec3 n = image.transfer->normal();
+        const auto [x, y, z] = image.transfer->camera;
+        const double before = 1 - glm::dot(n, glm::dvec3(x, y, z));
+        m_toward = glm::transpose(rotation({image.yaw, image.pitch, image.roll})) * (before < 0 ? -n : n);
+    }
+    template <class T>
+    T operator()(const T& x, const T& y) const {
+        const Ray<T> ray = m_chart.ray(x, y, 0);
+        return ray.x * m_toward.x + ray.y * m_toward.y + ray.z * m_toward.z;
+    }
+    /// Is it possible that a part of the image looks away?
+    bool may_look_away() const {
+        constexpr int kParts = 32;
+        const auto part = [](int i, int size) {
+            return Interval(1.0 * i * size / kParts, (i + 1.0) * size / kParts);
+        };
+        for (int i = 0; i < kParts * kParts; ++i) {
+            const Interval x = part(i % kParts, m_chart.width()), y = part(i / kParts, m_chart.height());
+            if (!(m_chart.inside(x, y, 0).hi < 0) && !((*this)(x, y).lo > 0)) return true;
+        }
+        return false;
+    }
+
+  private:
+    Chart m_chart;
+    glm::dvec3 m_toward;
+};
+
 ProjectImage drawn(const HuginImage& image) {
     const bool has_lens =
         std::any_of(image.lens.begin(), image.lens.end(), [](double value) { return value != 0; });
     const LensModel lens =
         has_lens ? LensModel{LensModel::Kind::ptlens, {image.lens.begin(), image.lens.end()}} : LensModel{};
+    const Chart chart(image.projection, image.size.width, image.size.height, image.fov, PixelSpacing::edges,
+                      "", 1, lens);
     SourceMask mask = mask_of(image);
-    return {Chart(image.projection, image.size.width, image.size.height, image.fov, PixelSpacing::edges, "",
-                  1, lens),
-            {image.yaw, image.pitch, image.roll},
-            mask,
-            image.crop || !image.masks.empty()};
+    Orientation held{image.yaw, image.pitch, image.roll};
+    held.transfer = image.transfer;
+    bool sees_no_plane = false;
+    if (image.transfer) {
+        const TowardPlane toward(chart, image);
+        sees_no_plane = toward.may_look_away();
+        if (sees_no_plane) mask.shows = [toward](double x, double y) { return toward(x, y) > 0; };
+    }
+    return {chart, held, mask, image.crop || !image.masks.empty() || sees_no_plane, sees_no_plane};
 }
 
 // --- Weights -----------------------------------------------------------------------------------------------
@@ -389,12 +429,16 @@ void check_ways(const ParameterValues& values) {
 }
 
 /// What layers cannot be.
-void check_layered(const ParameterValues& values, bool is_single) {
+void check_layered(const ParameterValues& values, const std::vector<ProjectImage>& images) {
+    const bool is_single = images.size() == 1;
     if (values.number("shutter") > 0)
         throw Error("shutter", printable(values.text("shutter")),
                     "must be of an image that is not cropped: of a project, with image=N");
     if (is_stmap(rows::chosen_output(values)) && !is_single)
         throw Error("output", values.text("output"), "must be of one image: with image=N");
+    if (is_stmap(rows::chosen_output(values)) && images[0].sees_no_plane)
+        throw Error("output", values.text("output"),
+                    "must be of an image of which no part looks away from its plane (TrX to Tpp)");
     const auto wrap = rows::chosen<Wrap>(values, "wrap");
     if (wrap != Wrap::automatic && wrap != Wrap::black)
         throw Error("wrap", values.text("wrap"),
@@ -499,7 +543,7 @@ LinkedFiles images_of_project(const ParameterValues& values, const SideFiles& fi
 std::unique_ptr<const Pictures> pictures_of_project(const OperationInput& input) {
     check_ways(input.values);
     const ProjectRequest request = read_request(input);
-    if (request.is_layered()) check_layered(input.values, request.images.size() == 1);
+    if (request.is_layered()) check_layered(input.values, request.images);
     const auto make = [request](const ParameterValues& given) -> std::unique_ptr<const Pictures> {
         check_rows(given);
         const ParameterValues values = with_target(given, request).values;

@@ -54,7 +54,7 @@ Cover FormulaView::cover(const Interval& x, const Interval& y, int, const Local&
     const Ray<Interval> r = ray(x, y);
     if (is_none(r)) return Cover::outside;
     if (!(there.lo > 0) || may_be_none(r)) return Cover::mixed;
-    return m_view.cover(transform(local.rotation, r, Panorama::kLocalError), local, across_seam);
+    return m_view.cover(transform(local.rotation, r, m_view.local_error()), local, across_seam);
 }
 
 Certainty FormulaView::has_rays(const Interval& x, const Interval& y) const {

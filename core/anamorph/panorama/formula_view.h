@@ -37,8 +37,7 @@ class FormulaView {
     template <class T>
     Point<T> operator()(const T& x, const T& y, const Local& local) const {
         // The frame of the target's rays is not turned, as that of a flat picture.
-        return source().local_point(transform(local.rotation, ray(x, y), Panorama::kLocalError),
-                                    local.source);
+        return source().local_point(transform(local.rotation, ray(x, y), m_view.local_error()), local.source);
     }
     template <std::floating_point Real>
     bool exact(const Real& x, const Real& y, int, Point<Real>& source_point, int& source_piece) const {

@@ -153,8 +153,9 @@ bool has_round_crop(int format) {
 }
 
 const std::set<std::string, std::less<>>& read_names() {
-    static const std::set<std::string, std::less<>> names = {"w", "h", "f", "v", "a", "b", "c",
-                                                             "d", "e", "y", "p", "r", "S", "n"};
+    static const std::set<std::string, std::less<>> names = {"w", "h", "f",   "v",   "a",   "b",   "c",
+                                                             "d", "e", "g",   "t",   "y",   "p",   "r",
+                                                             "S", "n", "TrX", "TrY", "TrZ", "Tpy", "Tpp"};
     return names;
 }
 /// What is about colours, and the value that changes none.
@@ -164,15 +165,13 @@ const std::map<std::string, double, std::less<>>& photometric_names() {
         {"Re", 0}, {"Va", 1}, {"Vb", 0}, {"Vc", 0}, {"Vd", 0}};
     return names;
 }
-/// What says nothing of where things are: stacks, where vignetting has its middle, the plane to which translations refer.
+/// What says nothing of where things are: stacks, and where vignetting has its middle.
 bool is_without_meaning(std::string_view name) {
-    for (const std::string_view known : {"j", "Vx", "Vy", "Vm", "Tpy", "Tpp", "Eev", "Vf"})
+    for (const std::string_view known : {"j", "Vx", "Vy", "Vm", "Eev", "Vf"})
         if (name == known) return true;
     return false;
 }
 std::string meaning_of(std::string_view name) {
-    if (name == "g" || name == "t") return "shear";
-    if (name.starts_with("Tr")) return "the camera stands still here";
     if (name.starts_with("Ti")) return "tilt";
     return "what it means is not known here";
 }
@@ -290,6 +289,14 @@ class Images {
         return value ? checked_number(name, *value, -kMostNumber, kMostNumber) : 0;
     }
 
+    /// Hugin's camera is TrX to the right of the panorama's, TrY below and TrZ behind.
+    std::optional<PlaneTransfer> transfer_of(std::size_t i) const {
+        const PlaneTransfer transfer{{number_or_0(i, "TrX"), number_or_0(i, "TrY"), -number_or_0(i, "TrZ")},
+                                     number_or_0(i, "Tpy"),
+                                     number_or_0(i, "Tpp")};
+        if (transfer.camera == std::array<double, 3>{}) return {};
+        return transfer;
+    }
     HuginImage image(std::size_t i) const {
         HuginImage image;
         // A name is a name, also one that begins as links do.
@@ -298,11 +305,12 @@ class Images {
         image.size = {checked_whole("w", needed(i, "w"), 1, kMaxSide),
                       checked_whole("h", needed(i, "h"), 1, kMaxSide)};
         image.fov = checked_number("v", needed(i, "v"), 1e-6, 360);
-        constexpr std::string_view kLens[] = {"a", "b", "c", "d", "e"};
+        constexpr std::string_view kLens[] = {"a", "b", "c", "g", "t", "d", "e"};
         for (std::size_t k = 0; k < image.lens.size(); ++k) image.lens[k] = number_or_0(i, kLens[k]);
         image.yaw = number_or_0(i, "y");
         image.pitch = number_or_0(i, "p");
         image.roll = number_or_0(i, "r");
+        image.transfer = transfer_of(i);
         if (const std::optional<std::string_view> crop = value_of(i, "S")) image.crop = checked_crop(*crop);
         const int format = checked_whole("f", needed(i, "f"), 0, 1000);
         image.is_round = image.crop && has_round_crop(format);

@@ -6,10 +6,10 @@
 //   i w3000 h2000 f0 v=0 a=0 b=0 c=0 d=0 e=0 y50 p1 r0.3 Eev12.5 S20,2980,10,1990 n"second.jpg"
 //   k i0 t0 p"10 20 300 20 300 400"
 //
-// A value =0 is that of image 0. Of the panorama (p) are read f, w, h, v and S; of images (i) w, h, f, v, a to e, y, p, r, S and n;
-// of masks (k) those that cut a part of their own image out (t0). Control points, what is to be optimized, output formats and
-// comments mean nothing here. What else an image has, such as shear (g, t) or a camera that moves (TrX), has to be 0. Exposure,
-// white balance, vignetting and response curves are not geometry: they are named, and not applied.
+// A value =0 is that of image 0. Of the panorama (p) are read f, w, h, v and S; of images (i) w, h, f, v, a to e, g, t, y, p, r, TrX
+// to TrZ, Tpy, Tpp, S and n; of masks (k) those that cut a part of their own image out (t0). Control points, what is to be
+// optimized, output formats and comments mean nothing here. What else an image has, such as tilt (TiX), has to be 0. Exposure, white
+// balance, vignetting and response curves are not geometry: they are named, and not applied.
 #pragma once
 
 #include <array>
@@ -23,6 +23,7 @@
 #include "anamorph/geometry/box.h"
 #include "anamorph/geometry/point.h"
 #include "anamorph/geometry/size.h"
+#include "anamorph/panorama/panorama.h"
 
 namespace anamorph {
 
@@ -32,10 +33,11 @@ struct HuginImage {
     Size size;
     Projection projection = Projection::rectilinear;
     double fov = 0;                   ///< horizontal field of view of the whole image
-    std::array<double, 5> lens = {};  ///< a to e, as ptlens has them
+    std::array<double, 7> lens = {};  ///< a, b, c, g, t, d and e, as ptlens has them
     double yaw = 0, pitch = 0, roll = 0;
-    std::optional<Box> crop = {};  ///< the part that is drawn; it may reach beyond the image
-    bool is_round = false;         ///< of the crop the circle in its middle alone
+    std::optional<PlaneTransfer> transfer = {};  ///< of a camera that stands beside the panorama's
+    std::optional<Box> crop = {};                ///< the part that is drawn; it may reach beyond the image
+    bool is_round = false;                       ///< of the crop the circle in its middle alone
     std::vector<std::vector<Point<double>>> masks = {};  ///< polygons that are cut out
     /// The first thing that it has and that is not drawn, "row 3: g5: must be 0 (shear)"; empty where all is.
     std::string refused = {};

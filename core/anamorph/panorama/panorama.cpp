@@ -88,6 +88,44 @@ Turn of_face(const Turn& turn, const glm::dmat3& face) {
     return all;
 }
 
+/// A number and what it is off at most.
+struct Off {
+    long double value = 0;
+    double error = 0;
+};
+/// a - b c, and by what the factors and a are off, with three roundings.
+Off less_product(const Off& a, const Off& b, const Off& c) {
+    const long double product = b.value * c.value;
+    const double error = a.error +
+                         static_cast<double>(std::fabs(b.value) * c.error + std::fabs(c.value) * b.error) +
+                         b.error * c.error;
+    const auto size = static_cast<double>(std::fabs(a.value) + std::fabs(product));
+    return {a.value - product, (error + 3 * Rounded<long double>::kUnit * size) * rounded_detail::kUp};
+}
+Off off_of(const Constant& constant) {
+    return {constant.precise(), error_of(constant)};
+}
+Constant constant_of(const Off& off) {
+    // An entry that is known no better than that it is small.
+    const bool is_lost = off.value == 0 && off.error > 0;
+    return Constant(is_lost ? off.error * 0x1p-20L : off.value, 2 * off.error);
+}
+
+/// (I - c n^T) of the columns of a turn.
+Turn transferred(const PlaneTransfer& transfer, const Turn& turn) {
+    const Turn toward = turn_of({transfer.yaw, transfer.pitch});
+    Turn all;
+    for (std::size_t column = 0; column < 3; ++column) {
+        Off along;  // less n . d
+        for (std::size_t i = 0; i < 3; ++i)
+            along = less_product(along, off_of(toward[2][i]), off_of(turn[column][i]));
+        for (std::size_t row = 0; row < 3; ++row)
+            all[column][row] =
+                constant_of(less_product(off_of(turn[column][row]), {-transfer.camera[row]}, along));
+    }
+    return all;
+}
+
 glm::dmat3 matrix_of(const Turn& turn) {
     glm::dmat3 matrix;
     for (int column = 0; column < 3; ++column)
@@ -103,19 +141,51 @@ glm::dmat3 rotation(const Orientation& orientation) {
     return matrix_of(turn_of(orientation));
 }
 
+glm::dvec3 PlaneTransfer::normal() const {
+    return rotation({yaw, pitch})[2];
+}
+
+namespace {
+
+/// How much longer than a direction what a camera sees of it may be. Throws Error where the camera is in its plane.
+double most_stretch(const PlaneTransfer& transfer) {
+    constexpr double kFarthest = 1e6, kLeast = 1e-6;
+    const auto [x, y, z] = transfer.camera;
+    const double far = std::hypot(x, y, z);
+    const double from_plane = std::fabs(1 - glm::dot(transfer.normal(), glm::dvec3(x, y, z)));
+    if (!(far <= kFarthest && from_plane >= kLeast))
+        throw Error("TrX, TrY, TrZ", std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(-z),
+                    "must be a place at most 1e6 away, and at least 1e-6 from the plane 1 away, which Tpy "
+                    "and Tpp turn");
+    return (1 + far) * rounded_detail::kUp;
+}
+
+}  // namespace
+
 Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation,
                    const Orientation& held)
     : m_source(source), m_target(target) {
-    const std::pair<const char*, double> angles[] = {
-        {"yaw", orientation.yaw},   {"pitch", orientation.pitch}, {"roll", orientation.roll},
-        {"srcyaw", held.yaw},       {"srcpitch", held.pitch},     {"srcroll", held.roll},
-        {"srccrop", held.ahead},    {"lens yaw", held.lens[0]},   {"lens pitch", held.lens[1]},
-        {"lens roll", held.lens[2]}};
+    const std::pair<const char*, double> angles[] = {{"yaw", orientation.yaw},
+                                                     {"pitch", orientation.pitch},
+                                                     {"roll", orientation.roll},
+                                                     {"srcyaw", held.yaw},
+                                                     {"srcpitch", held.pitch},
+                                                     {"srcroll", held.roll},
+                                                     {"srccrop", held.ahead},
+                                                     {"lens yaw", held.lens[0]},
+                                                     {"lens pitch", held.lens[1]},
+                                                     {"lens roll", held.lens[2]},
+                                                     {"Tpy", held.transfer ? held.transfer->yaw : 0},
+                                                     {"Tpp", held.transfer ? held.transfer->pitch : 0}};
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "must be a finite angle in degrees");
     m_turn = turn_of(orientation);
     if (orientation.face != glm::dmat3(1)) m_turn = of_face(m_turn, orientation.face);
+    if (held.transfer) {
+        m_local_error = kLocalError * most_stretch(*held.transfer);
+        m_turn = transferred(*held.transfer, m_turn);
+    }
     if (held.yaw != 0 || held.pitch != 0 || held.roll != 0) m_turn = relative(turn_of(held), m_turn);
     if (held.ahead != 0) m_turn = relative(turn_of({held.ahead}), m_turn);
     if (const auto& [yaw, pitch, roll] = held.lens; yaw != 0 || pitch != 0 || roll != 0)

@@ -12,6 +12,17 @@
 
 namespace anamorph {
 
+/// A camera that stands beside the middle of a world in which all that it sees lies on one plane, 1 away. A direction d of the
+/// middle meets that at X = d / (n . d), n being the plane's normal, where n . d > 0, and the camera sees X in the direction
+/// X - c, c being its place: in that of (I - c n^T) d. Where n . d is not positive no plane is met, but the map goes on.
+struct PlaneTransfer {
+    std::array<double, 3> camera{};  ///< c: right, down, forward
+    double yaw = 0, pitch = 0;       ///< of n, in degrees: to the right, up
+
+    /// n: right, down, forward.
+    glm::dvec3 normal() const;
+};
+
 /// The orientation of a camera, in degrees: yaw to the right, pitch up, roll clockwise; the camera is rolled first, then
 /// pitched, then turned. With R its rotation, world ray = R * ray of the camera.
 struct Orientation {
@@ -22,6 +33,8 @@ struct Orientation {
     glm::dmat3 face{1};
     /// The yaw, pitch and roll by which one lens of a camera of several is turned before all that. Of sources alone.
     std::array<double, 3> lens{};
+    /// Where its camera stands, if not in the middle. Of sources alone.
+    std::optional<PlaneTransfer> transfer{};
 };
 
 /// The rotation R of an orientation, between frames with x right, y down, z forward.
@@ -31,16 +44,16 @@ glm::dmat3 rotation(const Orientation& orientation);
 class Panorama {
   public:
     /// `orientation`: that of the target's camera; `held`: that of the source's camera (srcyaw, srcpitch and srcroll in
-    /// errors). Throws Error where an angle is not finite.
+    /// errors). Throws Error where an angle is not finite, and where a camera lies in its plane.
     Panorama(const Chart& source, const Chart& target, const Orientation& orientation = {},
              const Orientation& held = {});
 
     const Chart& source() const { return m_source; }
     const Chart& target() const { return m_target; }
-    /// The rotation between the rays, by columns: source ray = turn * target ray.
+    /// The rotation between the rays, by columns, with a transfer before it: source ray = turn * target ray.
     const std::array<std::array<Constant, 3>, 3>& turn() const { return m_turn; }
 
-    /// The branch of the map about one point: a branch of either chart, and the rotation between their local rays.
+    /// The branch of the map about one point: a branch of either chart, and the matrix (turn()) between their local rays.
     struct Local {
         Branch target, source;
         glm::dmat3 rotation;
@@ -77,7 +90,7 @@ class Panorama {
     /// The source's local ray of a target point.
     template <class T>
     Ray<T> local_ray(const T& x, const T& y, const Local& local) const {
-        return transform(local.rotation, m_target.local_ray(x, y, local.target), kLocalError);
+        return transform(local.rotation, m_target.local_ray(x, y, local.target), m_local_error);
     }
 
     /// The source point of a target point.
@@ -136,7 +149,12 @@ class Panorama {
     /// of S^T M, three products and two sums, is off by 3 u times the product of two lengths, 1, and of such errors three meet a
     /// column of T with two entries: 3 sqrt 2 u. The other product brings 3 u. That is 2 sqrt 2 h + 10 u at most, about half of
     /// what is returned.
+    ///
+    /// With a transfer M is a rotation times I - c n^T, which makes nothing longer than by 1 + |c|, as |n| = 1: all of these lengths
+    /// and errors are as much larger at most.
     static constexpr double kLocalError = 6 * Heading::kError + 64 * 0x1p-53;
+    /// That bound for this map.
+    double local_error() const { return m_local_error; }
 
   private:
     Local local_around(const Ray<double>& target_ray, int piece, const Ray<double>& source_ray) const;
@@ -152,7 +170,8 @@ class Panorama {
     bool ends_by_lens(const Ray<Interval>& ray, const Local& local) const;
 
     Chart m_source, m_target;
-    /// The rotation by columns, more precise than a double, and in double.
+    double m_local_error = kLocalError;
+    /// turn(), and the same in double.
     std::array<std::array<Constant, 3>, 3> m_turn;
     glm::dmat3 m_rotation;
 };
