@@ -17,6 +17,7 @@
 #include "deformation_numbers.h"
 #include "deformed_mesh.h"
 #include "execution.h"
+#include "explicit_points.h"
 #include "input_times.h"
 #include "vtkAnamorphDeformationList.h"
 #include "vtkCompositeDataIterator.h"
@@ -46,9 +47,10 @@ using anamorph_vtk::DeformedMesh;
 using anamorph_vtk::distributed;
 using anamorph_vtk::Numbers;
 
-/// A leaf of the input and that of the output, a shallow copy of it.
+/// A leaf of the input, with explicit points, and that of the output, a shallow copy of it.
 struct Leaf {
-    vtkPointSet *in, *out;
+    vtkSmartPointer<vtkPointSet> in;
+    vtkPointSet* out;
 };
 
 /// The deformations of the tables of all ranks: those of one if all that have any have the same.
@@ -165,8 +167,27 @@ void add_field_value(vtkDataObject* object, const char* name, double value) {
 }  // namespace
 
 struct vtkAnamorphDeform::Kept {
+    /// A grid whose points are implied, with explicit ones, which stay while it does.
+    struct Grid {
+        vtkMTimeType time = 0;
+        vtkSmartPointer<vtkPointSet> points;
+    };
+
     std::vector<std::unique_ptr<DeformedMesh>> meshes;  ///< by leaf
+    std::vector<Grid> grids;                            ///< by leaf
     anamorph_vtk::AutomaticPlane plane;
+
+    vtkSmartPointer<vtkPointSet> with_explicit_points(vtkDataObject* data, std::size_t leaf) {
+        if (auto* points = vtkPointSet::SafeDownCast(data)) return points;
+        if (grids.size() <= leaf) grids.resize(leaf + 1);
+        // Times are given once only, so that of the grid tells it from others too.
+        const vtkMTimeType time = anamorph_vtk::time_of_points(data);
+        if (grids[leaf].time != time) {
+            grids[leaf] = {};
+            grids[leaf] = {time, anamorph_vtk::with_explicit_points(data)};
+        }
+        return grids[leaf].points;
+    }
 };
 
 vtkAnamorphDeform::vtkAnamorphDeform()
@@ -324,10 +345,7 @@ vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInform
 
 int vtkAnamorphDeform::FillInputPortInformation(int port, vtkInformation* info) {
     if (port == 0) {
-        // Trees first: the pipeline then leaves the leaves to us, who have to see them all.
-        info->Remove(INPUT_REQUIRED_DATA_TYPE());
-        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
-        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+        anamorph_vtk::require_points(info);
     } else {
         info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
     }
@@ -344,9 +362,10 @@ int vtkAnamorphDeform::RequestDataObject(vtkInformation*, vtkInformationVector**
                                          vtkInformationVector* outputs) {
     vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
     if (!input) return 0;
-    anamorph_vtk::make_output(outputs->GetInformationObject(0), input);
-    anamorph_vtk::make_output(outputs->GetInformationObject(1), vtkNew<vtkPolyData>());
-    return 1;
+    return anamorph_vtk::guarded(this, [&] {
+        anamorph_vtk::make_output_of_points(outputs->GetInformationObject(0), input, "the surface");
+        anamorph_vtk::make_output(outputs->GetInformationObject(1), vtkNew<vtkPolyData>());
+    });
 }
 
 int vtkAnamorphDeform::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
@@ -382,6 +401,7 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
                 anamorph_vtk::hand_over_time({inputs, 2}, vtkDataObject::GetData(outputs, port));
         } catch (...) {
             this->Meshes->meshes.clear();
+            this->Meshes->grids.clear();
             throw;
         }
     };
@@ -413,9 +433,9 @@ struct vtkAnamorphDeform::Run {
 
 void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
     vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-    const auto add = [&](vtkPointSet* in, vtkPointSet* out) {
-        out->ShallowCopy(in);
-        leaves.push_back({in, out});
+    const auto add = [&](vtkDataObject* in, vtkPointSet* out) {
+        leaves.push_back({filter.Meshes->with_explicit_points(in, leaves.size()), out});
+        out->ShallowCopy(leaves.back().in);
     };
     if (auto* tree = vtkDataObjectTree::SafeDownCast(input)) {
         auto* copies = vtkDataObjectTree::SafeDownCast(output);
@@ -424,17 +444,20 @@ void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
         const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
         for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
             vtkDataObject* leaf = iterator->GetCurrentDataObject();
-            const auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-            if (auto* points = vtkPointSet::SafeDownCast(leaf))
-                add(points, vtkPointSet::SafeDownCast(copy));
-            else
+            if (const auto points = anamorph_vtk::new_point_set_like(leaf)) {
+                add(leaf, points);
+                copies->SetDataSet(iterator, points);
+            } else {
+                const auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
                 copy->ShallowCopy(leaf);
-            copies->SetDataSet(iterator, copy);
+                copies->SetDataSet(iterator, copy);
+            }
         }
     } else {
-        add(vtkPointSet::SafeDownCast(input), vtkPointSet::SafeDownCast(output));
+        add(input, vtkPointSet::SafeDownCast(output));
     }
     filter.Meshes->meshes.resize(leaves.size());
+    filter.Meshes->grids.resize(leaves.size());
 }
 
 void vtkAnamorphDeform::Run::choose_plane() {
@@ -541,7 +564,8 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     this->NumberOfPointsComputed = 0;
     this->NumberOfUndefinedPoints = 0;
     Run run{*this, outputs};
-    run.copy_leaves(vtkDataObject::GetData(inputs[0]));
+    const auto input = anamorph_vtk::without_levels(vtkDataObject::GetData(inputs[0]));
+    run.copy_leaves(input);
     // What all ranks do together comes first: one that then fails does not keep the others waiting.
     const std::vector<Numbers> more = table_of(vtkTable::GetData(inputs[1]), this->Controller);
     run.choose_plane();

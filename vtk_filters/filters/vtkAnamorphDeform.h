@@ -17,8 +17,9 @@
  * turns, unless the surface has become flat along one of them; an execution without AutomaticPlane forgets
  * them.
  *
- * Input: any vtkPointSet, or multiblock data and collections of partitioned data sets; leaves of other types
- * are passed on. Points that have no finite parameters stay. What comes out shares all arrays but the points,
+ * Input: any vtkPointSet; image data and rectilinear grids, which come out as structured grids with explicit
+ * points; multiblock data and collections of partitioned data sets, and AMR, which comes out as a multiblock of its
+ * levels. Leaves of other types are passed on. Points that have no finite parameters stay. What comes out shares all arrays but the points,
  * their normals and the Displacement array. Cell normals are dropped, and point normals unless ComputeNormals
  * is on. Normals are exact (from the kernels' derivatives) for a plane's parameters if the input has normals
  * or lies in the plane; otherwise the surface's own tangents are those of its cells (and the displacement's
