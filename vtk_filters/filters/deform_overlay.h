@@ -20,9 +20,11 @@ namespace anamorph_vtk {
 struct OverlayMesh {
     vtkPointSet* mesh;
     const std::vector<glm::dvec2>* parameters;
+    const anamorph::PointDepths* depths;  ///< of its points; empty where no bump needs them
 };
 
 /// Draws all of `list`, those that are not enabled too, on the surface that the list and the formula make.
+/// Where parts of a surface lie over each other, a bump with depth or side is drawn on the part that it moves most.
 /// Lines end where the meshes do, unless there is a plane to go on.
 void draw_overlay(const std::vector<anamorph::Deformation>& list, const anamorph::DeformOptions& options,
                   const std::optional<anamorph::FormulaDisplacement>& formula,

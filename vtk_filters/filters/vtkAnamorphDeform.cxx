@@ -45,6 +45,7 @@ using anamorph::Error;
 using anamorph::FormulaDisplacement;
 using anamorph_vtk::DeformedMesh;
 using anamorph_vtk::distributed;
+using anamorph_vtk::kNumbers;
 using anamorph_vtk::Numbers;
 
 /// A leaf of the input, with explicit points, and that of the output, a shallow copy of it.
@@ -57,7 +58,7 @@ struct Leaf {
 std::vector<Numbers> of_all_ranks(const std::vector<Numbers>& own, bool failed,
                                   vtkMultiProcessController* controller) {
     const auto ranks = static_cast<std::size_t>(controller->GetNumberOfProcesses());
-    const vtkIdType count = failed ? -1 : static_cast<vtkIdType>(9 * own.size());
+    const vtkIdType count = failed ? -1 : static_cast<vtkIdType>(kNumbers * own.size());
     std::vector<vtkIdType> counts(ranks), offsets(ranks);
     controller->AllGather(&count, counts.data(), 1);
     vtkIdType total = 0;
@@ -73,9 +74,10 @@ std::vector<Numbers> of_all_ranks(const std::vector<Numbers>& own, bool failed,
     controller->AllGatherV(flat.data(), all.data(), count, counts.data(), offsets.data());
     std::vector<std::vector<Numbers>> lists;
     for (std::size_t r = 0; r < ranks; ++r) {
-        std::vector<Numbers> list(static_cast<std::size_t>(counts[r]) / 9);
+        std::vector<Numbers> list(static_cast<std::size_t>(counts[r]) / kNumbers);
         for (std::size_t i = 0; i < list.size(); ++i)
-            std::copy_n(all.begin() + offsets[r] + static_cast<std::ptrdiff_t>(9 * i), 9, list[i].begin());
+            std::copy_n(all.begin() + offsets[r] + static_cast<std::ptrdiff_t>(kNumbers * i), kNumbers,
+                        list[i].begin());
         if (!list.empty()) lists.push_back(std::move(list));
     }
     if (lists.empty()) return {};
@@ -151,6 +153,14 @@ glm::dvec3 vector(const double* v) {
 
 void put(glm::dvec3 v, double* to) {
     for (int c = 0; c < 3; ++c) to[c] = v[c];
+}
+
+/// The numbers [begin, end) of all rows.
+vtkSmartPointer<vtkDoubleArray> columns_of(const std::vector<Numbers>& list, int begin, int end) {
+    auto columns = vtkSmartPointer<vtkDoubleArray>::New();
+    columns->SetNumberOfComponents(end - begin);
+    for (const Numbers& numbers : list) columns->InsertNextTuple(numbers.data() + begin);
+    return columns;
 }
 
 void add_field_value(vtkDataObject* object, const char* name, double value) {
@@ -288,12 +298,24 @@ void vtkAnamorphDeform::RemoveAllDeformations() {
     this->DeformationList->RemoveAllDeformations();
 }
 
+void vtkAnamorphDeform::SetDepth(int position, double center_w, double extent_w, double side) {
+    this->DeformationList->SetDepth(position, center_w, extent_w, side);
+}
+void vtkAnamorphDeform::SetNumberOfDepths(int number) {
+    this->DeformationList->SetNumberOfDepths(number);
+}
+double* vtkAnamorphDeform::GetDepth(int position) {
+    return this->DeformationList->GetDepth(position);
+}
+
 vtkDoubleArray* vtkAnamorphDeform::GetAllDeformations() {
-    this->AllDeformations = vtkSmartPointer<vtkDoubleArray>::New();
-    this->AllDeformations->SetNumberOfComponents(9);
-    for (const Numbers& numbers : this->DeformationList->GetAll())
-        this->AllDeformations->InsertNextTuple(numbers.data());
+    this->AllDeformations = columns_of(this->DeformationList->GetAll(), 0, 9);
     return this->AllDeformations;
+}
+
+vtkDoubleArray* vtkAnamorphDeform::GetAllDepths() {
+    this->AllDepths = columns_of(this->DeformationList->GetAll(), 9, kNumbers);
+    return this->AllDepths;
 }
 
 int vtkAnamorphDeform::ReadDeformations(const char* name) {
@@ -380,7 +402,9 @@ int vtkAnamorphDeform::RequestUpdateExtent(vtkInformation*, vtkInformationVector
     using Pipeline = vtkStreamingDemandDrivenPipeline;
     // Cells beyond a cut have corners at its points.
     vtkInformation* input = inputs[0]->GetInformationObject(0);
-    if (this->ComputeNormals && input && input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+    const std::vector<Numbers>& own = this->DeformationList->GetAll();
+    const bool sided = std::any_of(own.begin(), own.end(), [](const Numbers& n) { return n[11] != 0; });
+    if ((this->ComputeNormals || sided) && input && input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
         input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
                    input->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
     // Deformations reach across pieces.
@@ -555,7 +579,8 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
     std::vector<anamorph_vtk::OverlayMesh> meshes;
     for (std::size_t i = 0; i < leaves.size(); ++i)
         if (filter.Meshes->meshes[i])
-            meshes.push_back({leaves[i].in, &filter.Meshes->meshes[i]->parameters()});
+            meshes.push_back(
+                {leaves[i].in, &filter.Meshes->meshes[i]->parameters(), &filter.Meshes->meshes[i]->depths()});
     const bool whole = settings.on_plane && !distributed(filter.Controller);
     draw_overlay(list, settings.options, formula, meshes, whole ? &settings.plane : nullptr, overlay);
 }

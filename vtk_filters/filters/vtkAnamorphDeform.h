@@ -81,14 +81,23 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void MoveDeformation(int from, int to);
     void RemoveDeformation(int position);
     void RemoveAllDeformations();
+    /**
+     * The depth and the side of a deformation (vtkAnamorphDeformationList::SetDepth). The depth w of a point is its distance
+     * from the plane of (u, v), to the side of Axis1 x Axis2 (of the automatic plane: along x, y or z), or the third component
+     * of texture coordinates; normals are those of the undeformed surface: its own, or else those of its cells.
+     */
+    void SetDepth(int position, double center_w, double extent_w, double side = 0);
+    void SetNumberOfDepths(int number);
+    double* GetDepth(int position) VTK_SIZEHINT(3);
     ///@}
 
     ///@{
     /**
-     * For hosts of tables and files: the list's numbers, nine components each; the list read from a file, or
+     * For hosts of tables and files: the list's numbers, nine components each, and those of depths, three; the list read from a file, or
      * written to one (by rank 0). Without a name they do nothing. They return 1, or 0 after an error.
      */
     vtkDoubleArray* GetAllDeformations();
+    vtkDoubleArray* GetAllDepths();
     int ReadDeformations(const char* name);
     int WriteDeformations(const char* name);
     ///@}
@@ -267,7 +276,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void SetText(std::string& member, const char* text);
 
     vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
-    vtkSmartPointer<vtkDoubleArray> AllDeformations;
+    vtkSmartPointer<vtkDoubleArray> AllDeformations, AllDepths;
     vtkSmartPointer<vtkMultiProcessController> Controller;
     char* FileName = nullptr;
     std::string FormulaX, FormulaY, FormulaZ, FormulaDefinitions;

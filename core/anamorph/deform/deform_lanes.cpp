@@ -405,8 +405,8 @@ HWY_INLINE bool AddDeepTerm(const PointTerm& term, const TermPoints& points, std
     if constexpr (kSums) {
         const L f = term.gaussian ? ways[0].value * ways[1].value * ways[2].value
                                   : wendland_of(ways[0].value + ways[1].value + ways[2].value);
-        for (int c = 0; c < 3; ++c)
-            sum[c] = AddRounded(sum[c], hn::Set(D(), term.units[c]), (f * share.value).v);
+        const L whole = ZeroUnless(inside, f * share.value);
+        for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], hn::Set(D(), term.units[c]), whole.v);
     }
     if constexpr (kSlopes) AddDeepSlopes(term, ways, share, slope);
     return true;
