@@ -234,4 +234,63 @@ void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOp
     overlay->GetCellData()->AddArray(enabled);
 }
 
+namespace {
+
+/// The point of meshes that is best in some way, at which the best so far is no better.
+struct BestPoint {
+    double measure;
+    std::size_t mesh = 0, point = 0;
+    bool found = false;
+
+    void offer(double value, std::size_t m, std::size_t i) {
+        if (!(value > measure)) return;
+        *this = {value, m, i, true};
+    }
+};
+
+}  // namespace
+
+void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
+                  const anamorph::ParameterPlane& plane, double (&heights)[2]) {
+    const auto each_point = [&](const auto& body) {
+        for (std::size_t m = 0; m < std::min(meshes.size(), deformed.size()); ++m) {
+            if (!meshes[m]) continue;
+            const std::vector<glm::dvec2>& parameters = meshes[m]->parameters();
+            for (std::size_t i = 0; i < parameters.size(); ++i) body(m, i, parameters[i]);
+        }
+    };
+    const auto height_of = [&](std::size_t m, std::size_t i) {
+        double p[3];
+        deformed[m]->GetPoint(static_cast<vtkIdType>(i), p);
+        return plane.depth({p[0], p[1], p[2]});
+    };
+    BestPoint center{0}, corner{-1e300};
+    each_point([&](std::size_t m, std::size_t i, glm::dvec2 s) {
+        const anamorph::PointDepths& depths = meshes[m]->depths();
+        SurfacePlace place;
+        if (!depths.w.empty()) {
+            place.depth = depths.w[i];
+            place.normal = depths.normal[i];
+        }
+        center.offer(share_of(bump, s, place), m, i);
+    });
+    if (!center.found) return;
+    const double height = height_of(center.mesh, center.point);
+    heights[0] = heights[1] = height;
+    // The corner's nearest point, in extents; in depth it is near that of the centre.
+    const double length =
+        std::max(bump.extent.x * glm::length(plane.axis_u()), bump.extent.y * glm::length(plane.axis_v()));
+    const auto off = [&](glm::dvec2 s) { return (s - bump.center - bump.extent) / bump.extent; };
+    each_point([&](std::size_t m, std::size_t i, glm::dvec2 s) {
+        const double apart = (height_of(m, i) - height) / (4 * length);
+        corner.offer(-(glm::dot(off(s), off(s)) + apart * apart), m, i);
+    });
+    if (!corner.found) return;
+    // Where the mesh ends before the corner, that is as high as the centre.
+    constexpr double kNear = 0.25;
+    const glm::dvec2 found = off(meshes[corner.mesh]->parameters()[corner.point]);
+    if (glm::dot(found, found) < kNear) heights[1] = height_of(corner.mesh, corner.point);
+}
+
 }  // namespace anamorph_vtk

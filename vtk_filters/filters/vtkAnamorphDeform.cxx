@@ -186,6 +186,9 @@ struct vtkAnamorphDeform::Kept {
     std::vector<std::unique_ptr<DeformedMesh>> meshes;  ///< by leaf
     std::vector<Grid> grids;                            ///< by leaf
     anamorph_vtk::AutomaticPlane plane;
+    std::vector<vtkSmartPointer<vtkPointSet>> deformed;  ///< by leaf
+    anamorph::ParameterPlane used_plane;
+    bool on_plane = false;
 
     vtkSmartPointer<vtkPointSet> with_explicit_points(vtkDataObject* data, std::size_t leaf) {
         if (auto* points = vtkPointSet::SafeDownCast(data)) return points;
@@ -242,6 +245,7 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "ErrorBound: " << this->ErrorBound << "\n"
        << indent << "NumberOfPointsComputed: " << this->NumberOfPointsComputed << "\n"
        << indent << "NumberOfUndefinedPoints: " << this->NumberOfUndefinedPoints << "\n"
+       << indent << "SelectedDeformation: " << this->SelectedDeformation << "\n"
        << indent << "Controller: " << this->Controller.Get() << "\n"
        << indent << "DeformationList:\n";
     this->DeformationList->PrintSelf(os, indent.GetNextIndent());
@@ -359,6 +363,21 @@ vtkPolyData* vtkAnamorphDeform::GetOverlay() {
     return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
 }
 
+double* vtkAnamorphDeform::GetSelectedHeights() {
+    std::fill_n(this->SelectedHeights, 2, 0.0);
+    const std::vector<Numbers>& all = this->DeformationList->GetAll();
+    const int position = this->SelectedDeformation;
+    if (position < 0 || position >= static_cast<int>(all.size()) || !this->Meshes->on_plane)
+        return this->SelectedHeights;
+    anamorph_vtk::guarded(this, [&] {
+        const Deformation bump =
+            anamorph_vtk::checked_deformations({all[static_cast<std::size_t>(position)]})[0];
+        anamorph_vtk::find_heights(bump, this->Meshes->meshes, this->Meshes->deformed,
+                                   this->Meshes->used_plane, this->SelectedHeights);
+    });
+    return this->SelectedHeights;
+}
+
 vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
                                               vtkInformationVector* outputs) {
     if (!anamorph_vtk::has_inputs(this, {"the surface"})) return 0;
@@ -425,6 +444,7 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
                 anamorph_vtk::hand_over_time({inputs, 2}, vtkDataObject::GetData(outputs, port));
         } catch (...) {
             this->Meshes->meshes.clear();
+            this->Meshes->deformed.clear();
             this->Meshes->grids.clear();
             throw;
         }
@@ -588,6 +608,7 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
 void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
     this->NumberOfPointsComputed = 0;
     this->NumberOfUndefinedPoints = 0;
+    this->Meshes->deformed.clear();  // so that the meshes alone hold the points that they write
     Run run{*this, outputs};
     const auto input = anamorph_vtk::without_levels(vtkDataObject::GetData(inputs[0]));
     run.copy_leaves(input);
@@ -599,4 +620,11 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     run.settle_precision();
     run.deform_leaves();
     run.draw_overlay_of_meshes();
+    for (const Leaf& leaf : run.leaves) {
+        // Their points alone: who has the output may change its arrays.
+        this->Meshes->deformed.push_back(vtkSmartPointer<vtkPointSet>::Take(leaf.out->NewInstance()));
+        this->Meshes->deformed.back()->SetPoints(leaf.out->GetPoints());
+    }
+    this->Meshes->on_plane = run.settings.on_plane;
+    this->Meshes->used_plane = run.settings.plane;
 }

@@ -253,6 +253,18 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     vtkGetMacro(NumberOfUndefinedPoints, vtkIdType);
     ///@}
 
+    ///@{
+    /**
+     * For handles of hosts: how far from the plane of (u, v) the deformed surface is at the centre, and at the centre plus the extent,
+     * of a deformation of the filter's own list, by the last execution; at the centre, of several points over each other, where the
+     * deformation moves it most. 0 where no point of this rank is moved by it, and for texture coordinates. Selecting another
+     * deformation does not make the filter execute. The pointer is valid until the next call.
+     */
+    void SetSelectedDeformation(int position) { this->SelectedDeformation = position; }
+    int GetSelectedDeformation() { return this->SelectedDeformation; }
+    double* GetSelectedHeights() VTK_SIZEHINT(2);
+    ///@}
+
     vtkMTimeType GetMTime() override;
 
   protected:
@@ -288,6 +300,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     double Cutoff = 1e-7;
     bool ComputeNormals = true, ComputeDisplacement = true, GenerateOverlay = false;
     int OutputPointsPrecision = DEFAULT_PRECISION;
+    int SelectedDeformation = 0;
+    double SelectedHeights[2] = {};
     double ErrorBound = 0;
     vtkIdType NumberOfPointsComputed = 0, NumberOfUndefinedPoints = 0;
 
