@@ -1712,7 +1712,9 @@ TEST(VtkDeformDepth, ListsTablesAndTheOverlay) {
     }
     list->MoveDeformation(2, 0);
     EXPECT_EQ(list->GetDepth(0)[2], 2);
+    EXPECT_EQ(list->GetNumberOfDepths(), 1);
     list->SetNumberOfDepths(0);
+    EXPECT_EQ(list->GetNumberOfDepths(), 0);
     EXPECT_EQ(list->GetDepth(0)[2], 0);
     Errors errors(list);
     list->SetDepth(-1, 0, 1, 0);
@@ -1785,7 +1787,7 @@ TEST(VtkDeformDepth, HandlesAreOnTheDeformedSurface) {
     const vtkMTimeType time = filter->GetMTime();
     EXPECT_NEAR(filter->GetSelectedHeights()[0], 2, 1e-6);
     // At (.5, .5) the sphere is sqrt(.5) high, and moved by e^-2; the mesh has a point near by.
-    EXPECT_NEAR(filter->GetSelectedHeights()[1], std::sqrt(.5) + std::exp(-2), .1);
+    EXPECT_NEAR(filter->GetSelectedHeights()[1], std::sqrt(.5) + std::exp(-2), .15);
     filter->SetSelectedDeformation(1);
     EXPECT_NEAR(filter->GetSelectedHeights()[0], -std::sqrt(1 - .09), .02);
     filter->SetSelectedDeformation(7);

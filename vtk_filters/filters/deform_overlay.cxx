@@ -283,7 +283,7 @@ void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<Def
         std::max(bump.extent.x * glm::length(plane.axis_u()), bump.extent.y * glm::length(plane.axis_v()));
     const auto off = [&](glm::dvec2 s) { return (s - bump.center - bump.extent) / bump.extent; };
     each_point([&](std::size_t m, std::size_t i, glm::dvec2 s) {
-        const double apart = (height_of(m, i) - height) / (4 * length);
+        const double apart = (height_of(m, i) - height) / (16 * length);
         corner.offer(-(glm::dot(off(s), off(s)) + apart * apart), m, i);
     });
     if (!corner.found) return;

@@ -308,6 +308,9 @@ void vtkAnamorphDeform::SetDepth(int position, double center_w, double extent_w,
 void vtkAnamorphDeform::SetNumberOfDepths(int number) {
     this->DeformationList->SetNumberOfDepths(number);
 }
+int vtkAnamorphDeform::GetNumberOfDepths() {
+    return this->DeformationList->GetNumberOfDepths();
+}
 double* vtkAnamorphDeform::GetDepth(int position) {
     return this->DeformationList->GetDepth(position);
 }

@@ -88,6 +88,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      */
     void SetDepth(int position, double center_w, double extent_w, double side = 0);
     void SetNumberOfDepths(int number);
+    int GetNumberOfDepths();
     double* GetDepth(int position) VTK_SIZEHINT(3);
     ///@}
 

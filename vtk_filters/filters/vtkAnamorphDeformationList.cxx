@@ -154,6 +154,13 @@ void vtkAnamorphDeformationList::SetNumberOfDepths(int number) {
     for (int i = std::max(number, 0); i < this->GetNumberOfDeformations(); ++i) this->SetDepth(i, 0, 0, 0);
 }
 
+int vtkAnamorphDeformationList::GetNumberOfDepths() {
+    const auto last = std::find_if(this->List.rbegin(), this->List.rend(), [](const Numbers& numbers) {
+        return std::any_of(numbers.begin() + kPlain, numbers.end(), [](double n) { return n != 0; });
+    });
+    return static_cast<int>(this->List.rend() - last);
+}
+
 double* vtkAnamorphDeformationList::GetDepth(int position) {
     std::fill(this->Answer + kPlain, std::end(this->Answer), std::numeric_limits<double>::quiet_NaN());
     if (this->IsPosition(position, this->GetNumberOfDeformations()))

@@ -81,6 +81,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
      */
     void SetDepth(int position, double center_w, double extent_w, double side = 0);
     void SetNumberOfDepths(int number);
+    /** The number of deformations up to the last one with a depth or side. */
+    int GetNumberOfDepths();
     double* GetDepth(int position) VTK_SIZEHINT(3);
     ///@}
 

@@ -226,9 +226,9 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
     if (!row || !at) return;
     edits.frame = row->frame;
     // They are on the deformed surface of the last update, or where they have been put across the plane since.
-    const bool put = edits.center.has_value() || (this->HandlesPut && !all);
-    const double height = put ? row->frame.parameters(*at)[2] : this->Heights[0],
-                 corner_height = put ? height : this->Heights[1];
+    const bool lifted = edits.center.has_value() || (this->HandlesPut && !all);
+    const double height = lifted ? row->frame.parameters(*at)[2] : this->Heights[0],
+                 corner_height = lifted ? height : this->Heights[1];
     if (all) this->HandlesPut = false;
     const auto show = [&](const char* name, bool put, const double* numbers) {
         if (all || !put) set_numbers(this, name, numbers, 3);
