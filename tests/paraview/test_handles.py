@@ -15,6 +15,7 @@ SCRIPT = """
 import json, os
 from paraview.simple import *
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
+GetSettingsProxy("GeneralSettings").AutoApply = 1
 sphere = Sphere(Radius=1, ThetaResolution=64, PhiResolution=65)
 sphere.UpdatePipeline()
 deform = AnamorphDeform(Input=sphere, AutomaticPlane=0, Deformations=[0, 0, .5, .5, 0, 0, .5, 0, 1], Depths=[0, 0, 1])
@@ -71,13 +72,14 @@ def drive(folder):
             return json.load(file)
 
     def wait_for(condition):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 20
         while not condition():
             assert time.monotonic() < deadline and shown.poll() is None, "nothing happens"
             time.sleep(0.3)
     try:
         wait_for(lambda: os.path.exists(folder + "/state"))
-        time.sleep(5)  # panels are made after the script
+        time.sleep(6)  # panels are made after the script, and the welcome is shown
+        screen.close_dialog()
         left, top, right, bottom = view_on(screen.picture())
         size = state()["size"]
         assert abs(right - left - size[0]) <= 2 and abs(bottom - top - size[1]) <= 2, (left, top, right, bottom, size)
@@ -88,6 +90,7 @@ def drive(folder):
             before, at = state(), state()["handles"][name]
             start = left + at[0], bottom - at[1]
             screen.drag(start, (start[0] + right / pixel, start[1] - up / pixel))
+            np_save(folder + "/dragged", screen.picture())
             wait_for(lambda: state()["list"] != before["list"])
             time.sleep(2)
             return state()
@@ -106,7 +109,7 @@ def drive(folder):
         assert corner["list"][4:] == found[4:], corner["list"]
         np_save(folder + "/corner", screen.picture())
     finally:
-        shown.terminate()
+        shown.kill()
         shown.wait(timeout=60)
 
 
@@ -119,10 +122,7 @@ def np_save(name, picture):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        settings = folder + "/.config/ParaView"
-        os.makedirs(settings)
-        with open(settings + "/ParaView-UserSettings.json", "w") as file:
-            json.dump({"settings": {"GeneralSettings": {"ShowWelcomeDialog": 0, "AutoApply": 1, "AutoApplyDelay": 0}}}, file)
+        os.makedirs(folder + "/.config")
         with open(folder + "/script.py", "w") as file:
             file.write(SCRIPT.format(folder=folder))
         environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder}
