@@ -261,7 +261,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * deformation moves it most. 0 where no point of this rank is moved by it, and for texture coordinates. Selecting another
      * deformation does not make the filter execute. The pointer is valid until the next call.
      */
-    void SetSelectedDeformation(int position) { this->SelectedDeformation = position; }
+    void SetSelectedDeformation(int position) { this->SelectedDeformation = position < 0 ? 0 : position; }
     int GetSelectedDeformation() { return this->SelectedDeformation; }
     double* GetSelectedHeights() VTK_SIZEHINT(2);
     ///@}

@@ -99,6 +99,12 @@ std::optional<Row> selected_row(vtkSMProxy* proxy, std::vector<double>& list) {
     return Row{list.data() + first, *frame};
 }
 
+/// How far from the plane the centre's handle is: where it is, if it was put there, or as high as the surface.
+double height_of_handles(vtkSMProxy* proxy, const Row& row, bool put, double surface) {
+    const std::optional<Point> at = point_of(proxy, "SelectedCenter");
+    return put && at ? row.frame.parameters(*at)[2] : surface;
+}
+
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -211,7 +217,12 @@ void vtkSMAnamorphDeformProxy::Resolve() {
         if (edits.center) row->move_center(*edits.center);
         if (edits.corner) row->move_corner(*edits.corner);
         if (edits.vector) row->set_vector(*edits.vector);
-        if (edits.tip) row->move_tip(*edits.tip, point_of(this, "SelectedCenter").value_or(*edits.tip));
+        if (edits.tip) {
+            // From where the centre's handle is to be shown, whatever is set first.
+            const double height = height_of_handles(this, *row, this->HandlesPut, this->Heights[0]);
+            row->move_tip(*edits.tip,
+                          edits.center.value_or(row->frame.point(row->center(0), row->center(1), height)));
+        }
     }
     set_numbers(this, "Deformations", list.data(), list.size());
     this->ShowHandles(false);
@@ -227,7 +238,7 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
     edits.frame = row->frame;
     // They are on the deformed surface of the last update, or where they have been put across the plane since.
     const bool lifted = edits.center.has_value() || (this->HandlesPut && !all);
-    const double height = lifted ? row->frame.parameters(*at)[2] : this->Heights[0],
+    const double height = height_of_handles(this, *row, lifted, this->Heights[0]),
                  corner_height = lifted ? height : this->Heights[1];
     if (all) this->HandlesPut = false;
     const auto show = [&](const char* name, bool put, const double* numbers) {
