@@ -530,10 +530,11 @@ bool reaches(const simd::PointTerm& term, int axis, double least, double most) {
 template <int kSlopes>
 int point_slopes(const std::vector<const simd::PointTerm*>& near, const simd::TermPoints& points,
                  std::size_t count, double (&by)[kSlopes][SurfaceSlopes::kMost]) {
+    const int parameters = points.w ? 6 : 2;
     double* sums[kSlopes];
-    for (int c = 0; c < kSlopes; ++c) std::fill_n(sums[c] = by[c], count, 0.0);
+    for (int c = 0; c < 3 * parameters; ++c) std::fill_n(sums[c] = by[c], count, 0.0);
     simd::add_point_slopes(near.data(), near.size(), points, count, sums);
-    return points.w ? 6 : 2;
+    return parameters;
 }
 
 }  // namespace
