@@ -65,6 +65,9 @@ TEST(DeformationFile, WhatIsWrittenReadsBackToTheBit) {
         d.extent = {std::fabs(number()), std::fabs(number())};
         d.kernel = random() % 2 ? DeformationKernel::gaussian : DeformationKernel::wendland_c2;
         d.enabled = random() % 3 != 0;
+        if (random() % 2) d.center_w = number();
+        if (random() % 2) d.extent_w = std::fabs(number());
+        d.side = static_cast<DeformationSide>(random() % 3);
     }
     const auto json = parse_deformations_json(deformations_json(list), "a.json");
     const auto csv = parse_deformations_csv(deformations_csv(list), "a.csv");
@@ -73,6 +76,28 @@ TEST(DeformationFile, WhatIsWrittenReadsBackToTheBit) {
     EXPECT_TRUE(std::signbit(json[0].vector.z));
     EXPECT_TRUE(std::signbit(csv[0].vector.z));
     EXPECT_EQ(parse_deformations_json(deformations_json({}), "a.json"), std::vector<Deformation>());
+}
+
+TEST(DeformationFile, DepthsAndSides) {
+    const std::string json = R"({"deformations": [
+        {"vector": [0, 0, 1], "center": [1, 2, 3], "extent": [4, 5, 6], "side": "front"},
+        {"vector": [0, 0, 1], "center": [1, 2], "extent": [4, 5, 0], "side": "both"},
+        {"vector": [0, 0, 1], "center": [1, 2], "extent": [4, 5], "side": "back"}]})";
+    const std::vector<Deformation> list = parse_deformations_json(json, "a.json");
+    ASSERT_EQ(list.size(), 3u);
+    EXPECT_EQ(list[0].center_w, 3);
+    EXPECT_EQ(list[0].extent_w, 6);
+    EXPECT_EQ(list[0].side, DeformationSide::front);
+    EXPECT_TRUE(list[1].is_plain());
+    EXPECT_FALSE(list[2].has_depth());
+    EXPECT_EQ(list[2].side, DeformationSide::back);
+    const std::string csv =
+        "1,2,4,5,0,0,1,gaussian,1,3,6,front\n1,2,4,5,0,0,1\n1,2,4,5,0,0,1,gaussian,1,0,0,back\n";
+    EXPECT_EQ(parse_deformations_csv(csv, "a.csv"), list);
+    // Lists without either are written as they were.
+    EXPECT_EQ(deformations_csv({list[1]}),
+              "center_u,center_v,extent_u,extent_v,x,y,z,kernel,enabled\n1,2,4,5,0,0,1,gaussian,1\n");
+    EXPECT_EQ(deformations_json({list[1]}).find("side"), std::string::npos);
 }
 
 TEST(DeformationFile, FaultsNameFileAndEntry) {
@@ -107,6 +132,13 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     json(with("\"wendland_c2\"", "2"), "deformations[1]", "kernel: must be");
     json(with("false", "0"), "deformations[1]", "enabled: must be true or false");
     json(with("\"enabled\"", "\"on\""), "deformations[1]", "on: must be one of");
+    json(with("\"enabled\": false", "\"side\": 1"), "deformations[1]", "side: must be a name in quotes");
+    json(with("\"enabled\": false", "\"side\": \"left\""), "deformations[1]",
+         "side=left: must be both, front or back");
+    json(with("\"extent\": [1, 1]", "\"extent\": [1, 1, -2]"), "deformations[1]", "extent=-2: must be");
+    json(with("\"extent\": [1, 1]", "\"extent\": [1, 1, 2, 3]"), "deformations[1]",
+         "a list of 2 or 3 numbers");
+    json(with("\"center\": [0, 0]", "\"center\": [0]"), "deformations[1]", "a list of 2 or 3 numbers");
 
     const auto csv = [&](const std::string& row, const std::string& what) {
         expect("# list\n" + row, "face.csv", "row 2", what);
@@ -122,6 +154,9 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     csv("1,2,3,-4,5,6,7", "extent=-4");
     csv("1,2,3,4,5,6,7,round", "kernel=round");
     csv("1,2,3,4,5,6,7,gaussian,yes", "enabled=yes");
+    csv("1,2,3,4,5,6,7,gaussian,1,0,-1", "extent=-1");
+    csv("1,2,3,4,5,6,7,gaussian,1,inf,1", "center=inf");
+    csv("1,2,3,4,5,6,7,gaussian,1,0,1,2", "side=2");
     expect(std::string(text_file::kMostBytes + 1, ' '), "long.csv", "", "64 MB");
     std::string many;
     for (std::size_t i = 0; i <= kMaxDeformations; ++i) many += "1,1,1,1,1,1,1\n";

@@ -300,6 +300,150 @@ TEST(DrapedSurface, SumsAreThoseOfTheirPartsPointByPoint) {
     for (const double tol : {0.5, 0.05}) EXPECT_GT(expect_in_place(scene, tol, point), 2000);
 }
 
+/// Bumps with depth and sides on a sphere, whose normals are its radii, written out; v down.
+std::vector<Deformation> deep_bumps(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto number = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    std::vector<Deformation> list;
+    for (int k = 0; k < 12; ++k) {
+        Deformation d;
+        d.vector = {number(-.1, .1), number(-.1, .1), number(-.2, .2)};
+        d.center = {number(0, 1), number(0, 1)};
+        d.extent = {number(.1, .4), number(.1, .4)};
+        if (k % 2) d.kernel = DeformationKernel::wendland_c2;
+        if (k % 3 != 2) {
+            d.center_w = number(-.4, .4);
+            d.extent_w = number(.15, .6);
+        }
+        d.side = static_cast<DeformationSide>(k / 2 % 3);
+        list.push_back(d);
+    }
+    return list;
+}
+Vector deep_point(const SurfaceShape& shape, const std::vector<Deformation>& list, Real u, Real v) {
+    const Vector base = test::oracle_surface("sphere", shape, u, v);
+    Vector p = base;
+    for (const Deformation& d : list) {
+        const Real x = (u - d.center.x) / d.extent.x, y = (1 - v - d.center.y) / d.extent.y,
+                   z = d.extent_w > 0 ? (base[2] - d.center_w) / d.extent_w : 0,
+                   r = std::sqrt(x * x + y * y + z * z);
+        Real f = d.kernel == DeformationKernel::gaussian ? std::exp(-r * r)
+                 : r < 1                                 ? std::pow(1 - r, Real(4)) * (4 * r + 1)
+                                                         : 0;
+        const Vector along{d.vector.x, d.vector.y, d.vector.z};
+        Real cosine = 0, lengths[2] = {0, 0};
+        for (std::size_t k = 0; k < 3; ++k) {
+            cosine += base[k] * along[k];
+            lengths[0] += base[k] * base[k];
+            lengths[1] += along[k] * along[k];
+        }
+        cosine /= std::sqrt(lengths[0]) * std::sqrt(lengths[1]);
+        if (d.side != DeformationSide::both) {
+            const Real t =
+                std::clamp(2 * (d.side == DeformationSide::front ? cosine : -cosine), Real(0), Real(1));
+            f *= t * t * (3 - 2 * t);
+        }
+        for (std::size_t k = 0; k < 3; ++k) p[k] += along[k] * f;
+    }
+    return p;
+}
+
+TEST(DrapedSurface, DeepBumpsAreEnclosedByTheirRanges) {
+    constexpr unsigned kSeed = 31;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    SurfaceShape shape;
+    shape.angle = 360;
+    const std::vector<Deformation> all = deep_bumps(kSeed);
+    for (std::size_t k = 0; k <= all.size(); ++k) {
+        // Each by itself, and all.
+        const std::vector<Deformation> list = k < all.size() ? std::vector{all[k]} : all;
+        const auto surface = make_surface(number_of("sphere"), shape, list);
+        double width = 0;
+        for (int n = 0; n < 500; ++n) {
+            const double side = std::ldexp(1.0, -(n % 14)), u = (1 - side) * uniform(random),
+                         v = (1 - side) * uniform(random);
+            const SurfaceRange range = surface->range({u, u + side}, {v, v + side});
+            const double lost = surface->rounding({u, u + side}, {v, v + side});
+            const Real h = side / 64;
+            if (n % 14 == 10) width = std::max(width, range[2].c[0].hi - range[2].c[0].lo);
+            for (int m = 0; m < 6; ++m) {
+                const double s = u + static_cast<double>(h) +
+                                 (side - 2 * static_cast<double>(h)) * uniform(random),
+                             t = v + static_cast<double>(h) +
+                                 (side - 2 * static_cast<double>(h)) * uniform(random);
+                const auto f = [&](int i, int j) { return deep_point(shape, list, s + i * h, t + j * h); };
+                const Vector c = f(0, 0), e = f(1, 0), w = f(-1, 0), so = f(0, 1), no = f(0, -1), a = f(1, 1),
+                             b = f(-1, 1), g = f(1, -1), q = f(-1, -1);
+                const glm::dvec3 computed = surface->position(s, t);
+                const SurfaceFrame frame = surface->frame(s, t);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const Real is[6] = {c[i],
+                                        (e[i] - w[i]) / (2 * h),
+                                        (so[i] - no[i]) / (2 * h),
+                                        (e[i] - 2 * c[i] + w[i]) / (2 * h * h),
+                                        (a[i] - g[i] - b[i] + q[i]) / (4 * h * h),
+                                        (so[i] - 2 * c[i] + no[i]) / (2 * h * h)};
+                    const Real steps[6] = {1, h, h, h * h, h * h, h * h};
+                    for (int j = 0; j < 6; ++j) {
+                        EXPECT_LE(range[i].c[j].lo - 1e-17L / steps[j], is[j])
+                            << k << " " << j << " " << side;
+                        EXPECT_GE(range[i].c[j].hi + 1e-17L / steps[j], is[j])
+                            << k << " " << j << " " << side;
+                    }
+                    const Real off = std::fabs(c[i] - computed[static_cast<int>(i)]);
+                    EXPECT_LE(off, lost) << k;
+                    EXPECT_LE(off, surface->rounding(s, t)) << k;
+                    EXPECT_NEAR(frame.position[static_cast<int>(i)], computed[static_cast<int>(i)], 1e-14);
+                }
+            }
+        }
+        EXPECT_LT(width, 0.02) << k;  // small boxes are known well
+    }
+}
+
+TEST(DrapedSurface, DeepBumpsAreSeenWithinTheTolerance) {
+    SurfaceShape shape;
+    shape.angle = 360;
+    const std::vector<Deformation> list = deep_bumps(32);
+    Scene scene;
+    scene.own = make_surface(number_of("sphere"), shape, list);
+    scene.pose.position = {0.5, 0.6, 1.6};
+    for (const double tol : {0.5, 0.02})
+        for (const DrapeScheme scheme : {DrapeScheme::automatic, DrapeScheme::exact})
+            EXPECT_GT(expect_in_place(
+                          scene, tol, [&](Real u, Real v) { return deep_point(shape, list, u, v); }, scheme),
+                      2000);
+    // Points of a grid are those of position(), but for rounding.
+    const std::vector<double> u = {0, .2, .45, .5, .7, 1}, v = {.1, .3, .55, .9};
+    std::vector<glm::dvec3> grid(u.size() * v.size());
+    scene.own->positions(u, v, grid.data());
+    for (std::size_t j = 0; j < v.size(); ++j)
+        for (std::size_t i = 0; i < u.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(
+                    grid[j * u.size() + i][c],
+                    static_cast<double>(deep_point(shape, list, u[i], v[j])[static_cast<std::size_t>(c)]),
+                    scene.own->rounding(u[i], v[j]));
+}
+
+TEST(DrapedSurface, SidesAreOfSurfacesWithSmoothNormals) {
+    Deformation d;
+    d.vector = {0, 0, .1};
+    d.side = DeformationSide::front;
+    for (std::size_t which = 0; which < surface_names().size(); ++which) try {
+            make_surface(which, {}, {d});
+            EXPECT_TRUE(has_smooth_normals(which)) << surface_names()[which];
+        } catch (const Error& error) {
+            EXPECT_FALSE(has_smooth_normals(which)) << surface_names()[which];
+            EXPECT_THAT(error.what(), testing::HasSubstr("side=front or back: the normals of " +
+                                                         surface_names()[which] + " may turn abruptly"));
+        }
+}
+
 /// A surface that is text, and the same in long double.
 struct TextSurface {
     const char* name;

@@ -98,6 +98,7 @@ OTHERS = [
     Other("nudes", "figure pair 2", "command: test_every_script_of_the_tutorial_runs"),
     # In the order in which python_blocks.py and paraview_blocks.py run them.
     Other("python", "import vtkAnamorphDeform\n", "vtk", "deform"),
+    Other("python", "deform.SetDepth(", "vtk", "depths"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),

@@ -49,9 +49,14 @@ def drawn(actor):
 def check_deform():
     surface = vtkPlaneSource()
     surface.SetResolution(20, 20)
-    deform = run("deform", {"surface": surface})["deform"]
+    names = run("deform", {"surface": surface})
+    deform = names["deform"]
     # The bump in the middle is as high as its vector says.
     assert abs(points(deform.GetOutput())[:, 2].max() - 1) < 1e-3, points(deform.GetOutput()).max(0)
+    # At last it is of the back, which a plane does not show.
+    run("depths", names)
+    deform.Update()
+    assert points(deform.GetOutput())[:, 2].max() == 0, points(deform.GetOutput()).max(0)
 
 
 def check_project():
@@ -90,4 +95,4 @@ def check_mapper():
 checks = {"deform": check_deform, "project": check_project, "shader": check_shader, "mapper": check_mapper}
 for check in checks.values():
     check()
-assert set(TEXT) == {*checks, "textures"}, TEXT.keys()
+assert set(TEXT) == {*checks, "depths", "textures"}, TEXT.keys()

@@ -58,6 +58,45 @@ def check_handles(plane, properties, centre, corner):
     close(deform.Deformations, rows[0] + [3, 3.5, 1.5, 0.75, 0, 0, -1, 1, 1])
 
 
+def check_depths():
+    """A sphere gets a peak and no dent; handles are on the deformed surface; depths stay with rows, in files too."""
+    sphere = Sphere(Radius=1, ThetaResolution=64, PhiResolution=65)
+    deform = AnamorphDeform(Input=sphere, Deformations=[0, 0, .5, .5, 0, 0, 1, 0, 1], AutomaticPlane=0)
+    both = bounds(deform)
+    assert abs(both[5] - 2) < 1e-5 and both[4] > -1 + .2, both
+    deform.Depths = [0, 0, 1]
+    front = bounds(deform)
+    assert abs(front[5] - 2) < 1e-5 and abs(front[4] + 1) < 1e-5, front
+    deform.Depths = [1, .5, 0]
+    deep = bounds(deform)
+    assert abs(deep[5] - 2) < 1e-5 and abs(deep[4] + 1) < 1e-4, deep
+    close([round(c, 5) for c in deform.SelectedCenter], [0, 0, 2])
+    close([round(c, 5) for c in deform.SelectedTip], [0, 0, 3])
+    assert .5 < deform.SelectedCorner[2] < 1.1, list(deform.SelectedCorner)
+    # The tip's handle is the vector: dragged, the peak follows, and the handles with it.
+    deform.SelectedTip = [.25, 0, deform.SelectedCenter[2] + .5]
+    close(deform.Deformations, [0, 0, .5, .5, .25, 0, .5, 0, 1])
+    close(deform.SelectedVector, [.25, 0, .5])
+    deform.UpdatePipeline()
+    assert abs(deform.SelectedCenter[2] - 1.5) < 1e-5, list(deform.SelectedCenter)
+    close(deform.SelectedTip, [p + v for p, v in zip(deform.SelectedCenter, deform.SelectedVector)])
+    close(deform.Deformations, [0, 0, .5, .5, .25, 0, .5, 0, 1])
+    # A row more, a row less: the first keeps its depth.
+    once = bounds(deform)
+    deform.Deformations = list(deform.Deformations) + [1, 0, .1, .1, 0, 0, 0, 0, 1]
+    deform.UpdatePipeline()
+    deform.Deformations = list(deform.Deformations)[:9]
+    assert bounds(deform) == once
+    for name in ("deep.json", "deep.csv"):
+        deform.ExportFile = name
+        other = AnamorphDeform(Input=sphere, AutomaticPlane=0)
+        other.ImportFile = name
+        assert list(other.Deformations) == list(deform.Deformations) and list(other.Depths) == [1, .5, 0]
+        assert bounds(other) == once
+    deform.Depths = []
+    assert bounds(deform) != once
+
+
 def check_files(plane):
     deform = AnamorphDeform(Input=plane, Deformations=surfaces.BUMPS)
     for name in ("list.json", "list.csv"):
@@ -178,6 +217,7 @@ def check_refusal(plane):
 square = Plane(XResolution=100, YResolution=100)
 square.UpdatePipeline()
 check_default()
+check_depths()
 check_handles(square, {}, [2, 3, 0], [2.5, 3.25, 0])
 check_handles(square, {"AutomaticPlane": 0, "Origin": [1, 0, 0], "Axis1": [0, 2, 0], "Axis2": [0, 0, -1]},
               [1, 4, -3], [1, 5, -3.25])

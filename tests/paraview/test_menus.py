@@ -52,6 +52,25 @@ for name in ("AnamorphFigureGeometry", "AnamorphFigureOutline", "AnamorphFigureI
     assert all(offered(name, source) for source in figures), name
 
 
+# What moves points takes grids whose points are implied, and blocks and levels of them; trees of cells are greyed out.
+wavelet = Wavelet(WholeExtent=[-4, 4, -4, 4, -2, 2])
+levels, trees, table = HierarchicalFractal(MaximumLevel=2), HyperTreeGridRandom(), ProgrammableSource(OutputDataSetType="vtkTable")
+blocks = GroupDatasets(Input=[wavelet, sphere])
+for source in (wavelet, blocks, levels, trees, table):
+    source.UpdatePipeline()
+for name in ("AnamorphDeform", "AnamorphInbetween"):
+    allowed = [offered(name, source) for source in (sphere, wavelet, blocks, levels, trees, table)]
+    assert allowed == [True, True, True, True, False, False], (name, allowed)
+warped = simple.AnamorphDeform(Input=wavelet)
+warped.UpdatePipeline()
+kind = warped.GetDataInformation().GetDataSetTypeAsString()
+assert kind == "vtkStructuredGrid" and warped.GetDataInformation().GetNumberOfPoints() == 9 * 9 * 5, kind
+assert warped.PointData["RTData"], "the array of the grid is lost"
+warped = simple.AnamorphDeform(Input=levels)
+warped.UpdatePipeline()
+assert warped.GetDataInformation().GetNumberOfPoints() == levels.GetDataInformation().GetNumberOfPoints() > 0
+
+
 def errors_of(filter, **values):
     told = []
 

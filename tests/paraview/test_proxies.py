@@ -39,7 +39,7 @@ NOT_OFFERED = {"drape_data_filter", "drape_fov", "drape_scale", "drape_view", "d
 # Numbers that the panel has in a table, where they have no range of their own.
 IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.
-LEAST_ALONE = {"BaseIndex": 0, "Resolution": 0}
+LEAST_ALONE = {"SelectedDeformation": 0, "BaseIndex": 0, "Resolution": 0}
 # Setters that count as another class does.
 NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
             for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}

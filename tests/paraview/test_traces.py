@@ -220,7 +220,7 @@ def results():
                        for i in range(source.SMProxy.GetNumberOfOutputPorts())]
             assert any(dict(bits)["points"] for bits in outputs), name
             found[name, time] = outputs
-        handles = ("SelectedCenter", "SelectedCorner", "SelectedVector")
+        handles = ("SelectedCenter", "SelectedCorner", "SelectedTip", "SelectedVector")
         found[name] = {p: str(source.GetPropertyValue(p)) for p in source.ListProperties()
                        if not source.GetProperty(p).SMProperty.GetInformationOnly() and p not in handles
                        and not isinstance(source.GetProperty(p), servermanager.ProxyProperty)}

@@ -190,6 +190,28 @@ def check_formula(mesh, part):
     assert without.GetErrorBound() < deform.GetErrorBound() < without.GetErrorBound() + 1e-14
 
 
+def check_grid(rank, ranks):
+    """Every rank deforms its piece of a wavelet, an image, as it is deformed in the whole; blends of pieces too."""
+    def points_of(piece, pieces, parallel):
+        wavelet, deform, blend = vtkRTAnalyticSource(), anamorph.vtkAnamorphDeform(), anamorph.vtkAnamorphInbetween()
+        wavelet.SetWholeExtent(-6, 6, -5, 5, -3, 4)
+        deform.SetInputConnection(wavelet.GetOutputPort())
+        deform.AddDeformation(1, 2, 3, 2, 0.5, 0.25, -1)
+        if not parallel:
+            deform.SetController(None)
+        blend.AddInputConnection(wavelet.GetOutputPort())
+        blend.AddInputConnection(wavelet.GetOutputPort())
+        found = []
+        for algorithm in (deform, blend):
+            algorithm.UpdatePiece(piece, pieces, 0)
+            grid, image = algorithm.GetOutputDataObject(0), wavelet.GetOutput()
+            assert grid.GetClassName() == "vtkStructuredGrid" and grid.GetExtent() == image.GetExtent()
+            found.append({image.GetPoint(i): grid.GetPoint(i) for i in range(grid.GetNumberOfPoints())})
+        return found
+    for whole, part in zip(points_of(0, 1, False), points_of(rank, ranks, True)):
+        assert len(whole) == 13 * 11 * 8 and part and part.items() <= whole.items(), (len(whole), len(part))
+
+
 def main():
     controller = vtkMultiProcessController.GetGlobalController()
     rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
@@ -213,6 +235,7 @@ def main():
         for point, moved in points.items():
             assert moved == whole[point], (point, moved, whole[point])
     check_formula(mesh, part)
+    check_grid(rank, ranks)
     check_painted(mesh, part, controller)
     check_baked(rank, ranks)
     check_blocks(rank, ranks)

@@ -1515,3 +1515,287 @@ TEST(VtkDeform, ASharedList) {
 TEST(VtkDeform, FactoriesMayOverrideIt) {
     expect_overridden<vtkAnamorphDeform>("vtkAnamorphDeform");
 }
+
+namespace {
+
+/// A unit sphere with its own normals, or none.
+vtkSmartPointer<vtkPolyData> ball(bool normals) {
+    vtkNew<vtkSphereSource> sphere;
+    sphere->SetRadius(1);
+    sphere->SetThetaResolution(40);
+    sphere->SetPhiResolution(31);
+    sphere->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    sphere->SetGenerateNormals(normals);
+    sphere->Update();
+    return sphere->GetOutput();
+}
+
+vtkSmartPointer<vtkAnamorphDeform> on_the_plane(vtkPointSet* mesh) {
+    auto filter = vtkSmartPointer<vtkAnamorphDeform>::New();
+    filter->SetInputData(mesh);
+    filter->AutomaticPlaneOff();
+    return filter;
+}
+
+double heights_over(vtkPointSet* before, vtkPointSet* after, bool above) {
+    double most = 0;
+    for (vtkIdType i = 0; i < before->GetNumberOfPoints(); ++i)
+        if ((before->GetPoint(i)[2] > 0) == above)
+            most = std::max(most, std::fabs(after->GetPoint(i)[2] - before->GetPoint(i)[2]));
+    return most;
+}
+
+}  // namespace
+
+TEST(VtkDeformDepth, ASphereGetsAPeakAndNoDent) {
+    for (const bool normals : {true, false}) {
+        const auto mesh = ball(normals);
+        const auto filter = on_the_plane(mesh);
+        filter->AddDeformation(0, 0, .5, .5, 0, 0, 1);
+        filter->Update();
+        EXPECT_NEAR(heights_over(mesh, output(filter), true), 1, 1e-9);
+        EXPECT_NEAR(heights_over(mesh, output(filter), false), 1, 1e-9);
+        for (const auto& [center, extent, side] : {std::tuple(1., .5, 0.), std::tuple(0., 0., 1.)}) {
+            filter->SetDepth(0, center, extent, side);
+            filter->Update();
+            EXPECT_NEAR(heights_over(mesh, output(filter), true), 1, 1e-9);
+            // Near the equator the depth leaves e^-8.
+            EXPECT_LT(heights_over(mesh, output(filter), false), side == 1 ? 1e-9 : 4e-4);
+            EXPECT_EQ(filter->GetDepth(0)[2], side);
+        }
+        filter->SetDeformation(0, 0, 0, .5, .5, 0, 0, -1);
+        filter->SetDepth(0, 0, 0, vtkAnamorphDeformationList::BACK);
+        filter->Update();
+        EXPECT_NEAR(heights_over(mesh, output(filter), true), 1, 1e-9);
+        EXPECT_EQ(heights_over(mesh, output(filter), false), 0);
+    }
+}
+
+TEST(VtkDeformDepth, PointsAreWhereTheFormulaHasThemAndEditsLeaveNoTrace) {
+    const auto mesh = ball(true);
+    Random random(31);
+    std::vector<Deformation> list = bumps(9, 5);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        if (k % 2) {
+            list[k].center_w = random.number(-1, 1);
+            list[k].extent_w = random.number(.3, .8);
+        }
+        list[k].side = static_cast<anamorph::DeformationSide>(k % 3);
+    }
+    const auto set = [](vtkAnamorphDeform* filter, const std::vector<Deformation>& to) {
+        filter->RemoveAllDeformations();
+        add(filter, to);
+        for (std::size_t k = 0; k < to.size(); ++k)
+            filter->SetDepth(static_cast<int>(k), to[k].center_w, to[k].extent_w,
+                             static_cast<double>(to[k].side));
+    };
+    const auto filter = on_the_plane(mesh);
+    set(filter, list);
+    filter->Update();
+    const std::vector<double> first = coordinates(output(filter)),
+                              normals = numbers(output(filter)->GetPointData()->GetNormals());
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
+        double p[3], n[3];
+        mesh->GetPoint(i, p);
+        mesh->GetPointData()->GetNormals()->GetTuple(i, n);
+        const glm::dvec3 moved =
+            displacement_at(list, {p[0], p[1]}, p[2], glm::normalize(glm::dvec3(n[0], n[1], n[2])));
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(first[static_cast<std::size_t>(3 * i + c)], p[c] + moved[c],
+                        filter->GetErrorBound() + 1e-15);
+    }
+    // Without depth and side, as without them at all; and back again.
+    std::vector<Deformation> plain = list;
+    for (Deformation& d : plain) {
+        d.extent_w = 0;
+        d.side = anamorph::DeformationSide::both;
+    }
+    set(filter, plain);
+    filter->Update();
+    const auto other = on_the_plane(mesh);
+    add(other, plain);
+    other->Update();
+    EXPECT_EQ(coordinates(output(filter)), coordinates(output(other)));
+    EXPECT_EQ(numbers(output(filter)->GetPointData()->GetNormals()),
+              numbers(output(other)->GetPointData()->GetNormals()));
+    set(filter, list);
+    filter->SetDeformationEnabled(3, !filter->GetDeformationEnabled(3));
+    filter->Update();
+    filter->SetDeformationEnabled(3, !filter->GetDeformationEnabled(3));
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), first);
+    EXPECT_EQ(numbers(output(filter)->GetPointData()->GetNormals()), normals);
+    // An edit writes what it reaches.
+    filter->SetDepth(1, list[1].center_w, list[1].extent_w * 1.01, 1);
+    filter->Update();
+    EXPECT_GT(filter->GetNumberOfPointsComputed(), 0);
+    EXPECT_LE(filter->GetNumberOfPointsComputed(), mesh->GetNumberOfPoints());
+    for_any_threads([&] {
+        const auto again = on_the_plane(mesh);
+        set(again, list);
+        again->Update();
+        EXPECT_EQ(coordinates(output(again)), first);
+        EXPECT_EQ(numbers(output(again)->GetPointData()->GetNormals()), normals);
+    });
+}
+
+TEST(VtkDeformDepth, NormalsAreThoseOfTheDeformedSurface) {
+    // A sphere's points and normals, as functions of two angles, moved by the formula written out.
+    vtkNew<vtkSphereSource> sphere;
+    sphere->SetRadius(1);
+    sphere->SetThetaResolution(400);
+    sphere->SetPhiResolution(301);
+    sphere->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    sphere->Update();
+    vtkPolyData* mesh = sphere->GetOutput();
+    const auto filter = on_the_plane(mesh);
+    filter->AddDeformation(.1, 0, .6, .5, .1, 0, .5);
+    filter->AddDeformation(-.3, .2, .6, .5, 0, .2, -.2);
+    for (const bool sided : {true, false}) {
+        filter->SetDepth(0, .8, .7, sided ? 1 : 0);
+        filter->SetDepth(1, .7, 1, sided ? 2 : 0);
+        filter->Update();
+        vtkDataArray* normals = output(filter)->GetPointData()->GetNormals();
+        const auto moved = [&](glm::dvec3 p) {
+            p = glm::normalize(p);
+            glm::dvec3 sum = p;
+            for (int k = 0; k < 2; ++k) {
+                const double* d = filter->GetDeformation(k);
+                const glm::dvec3 v(d[4], d[5], d[6]);
+                const double x = (p.x - d[0]) / d[2], y = (p.y - d[1]) / d[3],
+                             z = (p.z - (k ? .7 : .8)) / (k ? 1 : .7),
+                             t = std::clamp(2 * (k ? -1 : 1) * glm::dot(p, v) / glm::length(v), 0., 1.);
+                sum += v * (std::exp(-x * x - y * y - z * z) * (sided ? t * t * (3 - 2 * t) : 1));
+            }
+            return sum;
+        };
+        double worst = 0;
+        for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); i += 3) {
+            double p[3], n[3];
+            mesh->GetPoint(i, p);
+            normals->GetTuple(i, n);
+            const glm::dvec3 at(p[0], p[1], p[2]);
+            // Near the poles triangles are needles.
+            if (std::hypot(at.x, at.y) < .1) continue;
+            const glm::dvec3 s = glm::normalize(glm::cross(at, glm::dvec3(.3, .5, .7))),
+                             t = glm::cross(at, s);
+            constexpr double h = 1e-5;
+            const glm::dvec3 exact = glm::normalize(
+                glm::cross(moved(at + h * s) - moved(at - h * s), moved(at + h * t) - moved(at - h * t)));
+            worst = std::max(worst, glm::distance(exact, glm::dvec3(n[0], n[1], n[2])));
+        }
+        // With sides, by the cells, whose edges are chords; without, by the sphere's own normals.
+        EXPECT_LT(worst, sided ? 2e-3 : 1e-7) << sided;
+    }
+}
+
+TEST(VtkDeformDepth, ListsTablesAndTheOverlay) {
+    vtkNew<vtkAnamorphDeformationList> list;
+    list->AddDeformation(0, 0, .5, .5, 0, 0, 1);
+    vtkNew<vtkTable> table;
+    list->WriteTable(table);
+    EXPECT_EQ(table->GetNumberOfColumns(), 9);
+    list->SetDepth(2, -1, .5, 2);  // appends two that move nothing
+    EXPECT_EQ(list->GetNumberOfDeformations(), 3);
+    list->SetDeformation(2, 1, 2, 3, 4, 5, 6, 7);
+    EXPECT_EQ(list->GetDepth(2)[1], .5);  // stays
+    list->WriteTable(table);
+    EXPECT_EQ(table->GetNumberOfColumns(), 12);
+    vtkNew<vtkAnamorphDeformationList> read;
+    EXPECT_EQ(read->ReadTable(table), 1);
+    EXPECT_EQ(read->GetAll(), list->GetAll());
+    const Folder folder;
+    for (const char* name : {"list.json", "list.csv"}) {
+        EXPECT_EQ(list->WriteFile(folder.path(name).c_str()), 1);
+        EXPECT_EQ(read->ReadFile(folder.path(name).c_str()), 1);
+        EXPECT_EQ(read->GetAll(), list->GetAll());
+    }
+    list->MoveDeformation(2, 0);
+    EXPECT_EQ(list->GetDepth(0)[2], 2);
+    EXPECT_EQ(list->GetNumberOfDepths(), 1);
+    list->SetNumberOfDepths(0);
+    EXPECT_EQ(list->GetNumberOfDepths(), 0);
+    EXPECT_EQ(list->GetDepth(0)[2], 0);
+    Errors errors(list);
+    list->SetDepth(-1, 0, 1, 0);
+    EXPECT_THAT(errors.text(), HasSubstr("position=-1: must be"));
+
+    // The oval of a bump of the back lies below the sphere's middle.
+    const auto mesh = ball(true);
+    const auto filter = on_the_plane(mesh);
+    filter->GenerateOverlayOn();
+    for (const double side : {1., 2.}) {
+        filter->RemoveAllDeformations();
+        filter->AddDeformation(0, 0, .4, .4, 0, 0, .3);
+        filter->SetDepth(0, 0, 0, side);
+        filter->Update();
+        double bounds[6];
+        filter->GetOverlay()->GetBounds(bounds);
+        if (side == 1)
+            EXPECT_GT(bounds[4], .85);
+        else
+            EXPECT_LT(bounds[5], -.55);
+    }
+    // What is wrong is said.
+    Errors said(filter);
+    filter->SetDepth(0, 0, 0, 3);
+    filter->Update();
+    EXPECT_THAT(said.text(), HasSubstr("deformation 0: side=3: must be 0 (both), 1 (front) or 2 (back)"));
+    said.clear();
+    filter->SetDepth(0, 0, -1, 0);
+    filter->Update();
+    EXPECT_THAT(said.text(), HasSubstr("deformation 0: extent=-1"));
+    said.clear();
+    const auto flat = square(9, VTK_DOUBLE);
+    filter->SetInputData(flat);
+    filter->SetDepth(0, 0, 1, 0);
+    filter->SetParameterModeToTextureCoordinates();
+    filter->Update();
+    EXPECT_THAT(said.text(), HasSubstr("need texture coordinates of 3 components, not 2"));
+}
+
+TEST(VtkDeformDepth, DepthsOfTextureCoordinatesAndPointsWithoutOne) {
+    const auto mesh = square(40, VTK_DOUBLE);
+    vtkNew<vtkDoubleArray> coordinates_and_depth;
+    coordinates_and_depth->SetNumberOfComponents(3);
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+        coordinates_and_depth->InsertNextTuple3(mesh->GetPoint(i)[0], mesh->GetPoint(i)[1],
+                                                i % 2   ? 0
+                                                : i % 3 ? 5
+                                                        : kNan);
+    mesh->GetPointData()->SetTCoords(coordinates_and_depth);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->SetParameterModeToTextureCoordinates();
+    filter->AddDeformation(0, 0, 1, 1, 0, 0, 1);
+    filter->SetDepth(0, 0, .5);
+    filter->Update();
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
+        const double *p = mesh->GetPoint(i), expected = i % 2 ? std::exp(-p[0] * p[0] - p[1] * p[1]) : 0;
+        EXPECT_NEAR(output(filter)->GetPoint(i)[2], expected, 1e-6);
+    }
+}
+
+TEST(VtkDeformDepth, HandlesAreOnTheDeformedSurface) {
+    const auto mesh = ball(true);
+    const auto filter = on_the_plane(mesh);
+    filter->AddDeformation(0, 0, .5, .5, 0, 0, 1);
+    filter->AddDeformation(.3, 0, .4, .4, 0, 0, 0);
+    filter->SetDepth(0, 0, 0, 1);
+    filter->SetDepth(1, -1, .4);
+    filter->Update();
+    const vtkMTimeType time = filter->GetMTime();
+    EXPECT_NEAR(filter->GetSelectedHeights()[0], 2, 1e-6);
+    // At (.5, .5) the sphere is sqrt(.5) high, and moved by e^-2; the mesh has a point near by.
+    EXPECT_NEAR(filter->GetSelectedHeights()[1], std::sqrt(.5) + std::exp(-2), .15);
+    filter->SetSelectedDeformation(1);
+    EXPECT_NEAR(filter->GetSelectedHeights()[0], -std::sqrt(1 - .09), .02);
+    filter->SetSelectedDeformation(7);
+    EXPECT_EQ(filter->GetSelectedHeights()[0], 0);
+    EXPECT_EQ(filter->GetMTime(), time);
+    // What was asked for holds nothing that an edit then copies.
+    filter->SetDeformation(0, 0, 0, .5, .5, 0, 0, .5);
+    filter->SetSelectedDeformation(0);
+    filter->Update();
+    EXPECT_NEAR(filter->GetSelectedHeights()[0], 1.5, 1e-6);
+}

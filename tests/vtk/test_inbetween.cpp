@@ -8,6 +8,7 @@
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
+#include <vtkHyperTreeGrid.h>
 #include <vtkIdTypeArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -750,11 +751,12 @@ TEST(VtkInbetween, CollectionsOfPartitionsAreBlended) {
                 sum_of({shape, base}, {0.25, 0.75}), 1e-6);
 
     vtkNew<vtkPartitionedDataSet> pictures;
-    pictures->SetPartition(0, vtkNew<vtkImageData>());
+    pictures->SetPartition(0, vtkNew<vtkHyperTreeGrid>());
     for (const auto& input : inputs) input->SetPartitionedDataSet(0, pictures);
     filter->Modified();
     filter->Update();
-    EXPECT_THAT(errors.text(), HasSubstr("is a vtkImageData, not a vtkPointSet"));
+    EXPECT_THAT(errors.text(),
+                HasSubstr("is a vtkHyperTreeGrid, not a point set, image data or a rectilinear grid"));
 }
 
 // ---- Time ----

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "surface_normals.h"
@@ -19,6 +20,19 @@ namespace anamorph_vtk {
 namespace {
 
 using anamorph::Deformation;
+
+/// A point of a surface, undeformed, with its depth and its normal.
+struct SurfacePlace {
+    glm::dvec3 point{0.0};
+    double depth = 0;
+    glm::dvec3 normal{0.0};
+};
+
+/// How much of its vector a bump moves a point.
+double share_of(const Deformation& bump, glm::dvec2 s, const SurfacePlace& place) {
+    const anamorph::Triple<double> to = anamorph::side_direction<double>(bump);
+    return influence(bump, s.x, s.y, place.depth, glm::dot(place.normal, {to.x, to.y, to.z}));
+}
 
 /// Where a surface is, by its parameters: triangles of the parameter plane in bins.
 class SurfaceOfParameters {
@@ -43,10 +57,13 @@ class SurfaceOfParameters {
         }
     }
 
-    std::optional<glm::dvec3> at(glm::dvec2 s) const {
+    /// The part of the surface at s, or of several the one that a bump with depth or side moves most.
+    std::optional<SurfacePlace> at(glm::dvec2 s, const Deformation& bump) const {
         if (m_triangles.empty() ||
             !(s.x >= m_least.x && s.x <= m_most.x && s.y >= m_least.y && s.y <= m_most.y))
             return std::nullopt;
+        std::optional<SurfacePlace> best;
+        double most = -1;
         for (const std::size_t k : m_bins[static_cast<std::size_t>(bin(s.y, 1) * m_side + bin(s.x, 0))]) {
             const Triangle& t = m_triangles[k];
             // Barycentric coordinates.
@@ -55,16 +72,27 @@ class SurfaceOfParameters {
             const double area = a.x * b.y - a.y * b.x;
             const double x = (c.x * b.y - c.y * b.x) / area, y = (a.x * c.y - a.y * c.x) / area;
             constexpr double kRounding = 1e-9;
-            if (x >= -kRounding && y >= -kRounding && x + y <= 1 + kRounding)
-                return t.points[0] + x * (t.points[1] - t.points[0]) + y * (t.points[2] - t.points[0]);
+            if (!(x >= -kRounding && y >= -kRounding && x + y <= 1 + kRounding)) continue;
+            const auto between = [&](const auto& of) {
+                return of(0) + x * (of(1) - of(0)) + y * (of(2) - of(0));
+            };
+            SurfacePlace place{between([&](std::size_t i) { return t.places[i].point; }),
+                               between([&](std::size_t i) { return t.places[i].depth; }),
+                               between([&](std::size_t i) { return t.places[i].normal; })};
+            if (bump.is_plain()) return place;
+            const double share = share_of(bump, s, place);
+            if (share > most) {
+                best = place;
+                most = share;
+            }
         }
-        return std::nullopt;
+        return best;
     }
 
   private:
     struct Triangle {
         std::array<glm::dvec2, 3> parameters;
-        std::array<glm::dvec3, 3> points;
+        std::array<SurfacePlace, 3> places;
     };
 
     /// The bins around a triangle.
@@ -97,7 +125,12 @@ class SurfaceOfParameters {
             if (!is_finite(t.parameters[c])) return;
             double p[3];
             m.mesh->GetPoint(ids[c], p);
-            t.points[c] = {p[0], p[1], p[2]};
+            t.places[c].point = {p[0], p[1], p[2]};
+            if (m.depths && !m.depths->w.empty()) {
+                const auto id = static_cast<std::size_t>(ids[c]);
+                t.places[c].depth = m.depths->w[id];
+                t.places[c].normal = m.depths->normal[id];
+            }
         }
         m_triangles.push_back(t);
         for (const glm::dvec2& s : t.parameters) {
@@ -151,6 +184,7 @@ void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOp
     positions->SetName("Deformation");
     enabled->SetName("Enabled");
     std::vector<glm::dvec2> parameters;  // of `points`
+    std::vector<SurfacePlace> places;    // of `points`
     for (std::size_t k = 0; k < list.size(); ++k)
         for (const std::vector<glm::dvec2>& path : paths_of(list[k])) {
             std::vector<vtkIdType> line;
@@ -163,34 +197,100 @@ void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOp
                 line.clear();
             };
             for (const glm::dvec2& s : path) {
-                std::optional<glm::dvec3> p;
+                std::optional<SurfacePlace> p;
                 if (is_finite(s)) {
-                    p = surface.at(s);
-                    if (!p && plane) p = plane->point(s);
+                    p = surface.at(s, list[k]);
+                    if (!p && plane) p = SurfacePlace{plane->point(s)};
                 }
                 if (!p) {
                     finish();
                     continue;
                 }
-                line.push_back(points->InsertNextPoint(p->x, p->y, p->z));
+                line.push_back(points->InsertNextPoint(p->point.x, p->point.y, p->point.z));
                 parameters.push_back(s);
+                places.push_back(*p);
             }
             finish();
         }
-    std::vector<anamorph::DisplacementJet> jets(parameters.size());
-    anamorph::displacement_jets(list, parameters, options, jets.data());
-    for (std::size_t i = 0; i < jets.size(); ++i) {
+    std::vector<glm::dvec3> moved(parameters.size());
+    if (needs_depth(list)) {
+        for (std::size_t i = 0; i < moved.size(); ++i)
+            moved[i] = displacement_at(list, parameters[i], places[i].depth, places[i].normal);
+    } else {
+        std::vector<anamorph::DisplacementJet> jets(parameters.size());
+        anamorph::displacement_jets(list, parameters, options, jets.data());
+        for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = jets[i].value;
+    }
+    for (std::size_t i = 0; i < moved.size(); ++i) {
         double p[3];
         const auto id = static_cast<vtkIdType>(i);
         points->GetPoint(id, p);
-        glm::dvec3 moved = jets[i].value;
-        if (formula) moved += formula->jet(parameters[i]).value;
-        points->SetPoint(id, p[0] + moved.x, p[1] + moved.y, p[2] + moved.z);
+        if (formula) moved[i] += formula->jet(parameters[i]).value;
+        points->SetPoint(id, p[0] + moved[i].x, p[1] + moved[i].y, p[2] + moved[i].z);
     }
     overlay->SetPoints(points);
     overlay->SetLines(lines);
     overlay->GetCellData()->AddArray(positions);
     overlay->GetCellData()->AddArray(enabled);
+}
+
+namespace {
+
+/// The point of meshes that is best in some way, at which the best so far is no better.
+struct BestPoint {
+    double measure;
+    std::size_t mesh = 0, point = 0;
+    bool found = false;
+
+    void offer(double value, std::size_t m, std::size_t i) {
+        if (!(value > measure)) return;
+        *this = {value, m, i, true};
+    }
+};
+
+}  // namespace
+
+void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
+                  const anamorph::ParameterPlane& plane, double (&heights)[2]) {
+    const auto each_point = [&](const auto& body) {
+        for (std::size_t m = 0; m < std::min(meshes.size(), deformed.size()); ++m) {
+            if (!meshes[m]) continue;
+            const std::vector<glm::dvec2>& parameters = meshes[m]->parameters();
+            for (std::size_t i = 0; i < parameters.size(); ++i) body(m, i, parameters[i]);
+        }
+    };
+    const auto height_of = [&](std::size_t m, std::size_t i) {
+        double p[3];
+        deformed[m]->GetPoint(static_cast<vtkIdType>(i), p);
+        return plane.depth({p[0], p[1], p[2]});
+    };
+    BestPoint center{0}, corner{-1e300};
+    each_point([&](std::size_t m, std::size_t i, glm::dvec2 s) {
+        const anamorph::PointDepths& depths = meshes[m]->depths();
+        SurfacePlace place;
+        if (!depths.w.empty()) {
+            place.depth = depths.w[i];
+            place.normal = depths.normal[i];
+        }
+        center.offer(share_of(bump, s, place), m, i);
+    });
+    if (!center.found) return;
+    const double height = height_of(center.mesh, center.point);
+    heights[0] = heights[1] = height;
+    // The corner's nearest point, in extents; in depth it is near that of the centre.
+    const double length =
+        std::max(bump.extent.x * glm::length(plane.axis_u()), bump.extent.y * glm::length(plane.axis_v()));
+    const auto off = [&](glm::dvec2 s) { return (s - bump.center - bump.extent) / bump.extent; };
+    each_point([&](std::size_t m, std::size_t i, glm::dvec2 s) {
+        const double apart = (height_of(m, i) - height) / (16 * length);
+        corner.offer(-(glm::dot(off(s), off(s)) + apart * apart), m, i);
+    });
+    if (!corner.found) return;
+    // Where the mesh ends before the corner, that is as high as the centre.
+    constexpr double kNear = 0.25;
+    const glm::dvec2 found = off(meshes[corner.mesh]->parameters()[corner.point]);
+    if (glm::dot(found, found) < kNear) heights[1] = height_of(corner.mesh, corner.point);
 }
 
 }  // namespace anamorph_vtk

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "anamorph/deform/deformed_surface.h"
 #include "anamorph/deform/formula_displacement.h"
 #include "anamorph/deform/plane_warp.h"
+#include "deformed_mesh.h"
+#include "vtkSmartPointer.h"
 
 class vtkPointSet;
 class vtkPolyData;
@@ -20,13 +23,21 @@ namespace anamorph_vtk {
 struct OverlayMesh {
     vtkPointSet* mesh;
     const std::vector<glm::dvec2>* parameters;
+    const anamorph::PointDepths* depths;  ///< of its points; empty where no bump needs them
 };
 
 /// Draws all of `list`, those that are not enabled too, on the surface that the list and the formula make.
+/// Where parts of a surface lie over each other, a bump with depth or side is drawn on the part that it moves most.
 /// Lines end where the meshes do, unless there is a plane to go on.
 void draw_overlay(const std::vector<anamorph::Deformation>& list, const anamorph::DeformOptions& options,
                   const std::optional<anamorph::FormulaDisplacement>& formula,
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay);
+
+/// Finds how far from a plane deformed meshes are at the centre of a bump, of several points where it moves them most, and at its
+/// centre plus its extent near by in depth: at the points of the meshes that are nearest. What is not found is left as it is.
+void find_heights(const anamorph::Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
+                  const anamorph::ParameterPlane& plane, double (&heights)[2]);
 
 }  // namespace anamorph_vtk

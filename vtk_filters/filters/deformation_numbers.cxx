@@ -20,30 +20,39 @@ namespace {
 
 using anamorph::Deformation;
 using anamorph::DeformationKernel;
+using anamorph::DeformationSide;
 using anamorph::Error;
 
-constexpr const char* kColumns[9] = {"center_u", "center_v", "extent_u", "extent_v", "x",
-                                     "y",        "z",        "kernel",   "enabled"};
-constexpr int kNeededColumns = 7;
+constexpr const char* kColumns[kNumbers] = {"center_u", "center_v", "extent_u", "extent_v", "x",   "y", "z",
+                                            "kernel",   "enabled",  "center_w", "extent_w", "side"};
+constexpr int kNeededColumns = 7, kKernel = 7, kPlainColumns = 9, kSide = 11;
 
 Deformation deformation_of(const Numbers& n) {
     if (n[7] != 0 && n[7] != 1)
         throw Error("kernel", anamorph::shortest(n[7]), "must be 0 (gaussian) or 1 (wendland_c2)");
     if (n[8] != 0 && n[8] != 1) throw Error("enabled", anamorph::shortest(n[8]), "must be 0 or 1");
+    if (n[11] != 0 && n[11] != 1 && n[11] != 2)
+        throw Error("side", anamorph::shortest(n[11]), "must be 0 (both), 1 (front) or 2 (back)");
     const Deformation d{{n[4], n[5], n[6]},
                         {n[0], n[1]},
                         {n[2], n[3]},
                         n[7] == 0 ? DeformationKernel::gaussian : DeformationKernel::wendland_c2,
-                        n[8] == 1};
+                        n[8] == 1,
+                        n[9],
+                        n[10],
+                        static_cast<DeformationSide>(static_cast<int>(n[11]))};
     check_deformation(d);
     return d;
 }
 
 /// A cell of a table as a number.
 double number_in(const vtkVariant& cell, int column) {
-    if (column == 7 && cell.IsString() && !cell.ToString().empty() &&
-        std::isalpha(static_cast<unsigned char>(cell.ToString()[0])))
+    const bool named = (column == kKernel || column == kSide) && cell.IsString() &&
+                       !cell.ToString().empty() &&
+                       std::isalpha(static_cast<unsigned char>(cell.ToString()[0]));
+    if (named && column == kKernel)
         return anamorph::kernel_named(cell.ToString()) == DeformationKernel::gaussian ? 0 : 1;
+    if (named) return static_cast<int>(anamorph::side_named(cell.ToString()));
     bool valid = false;
     const double number = cell.ToDouble(&valid);
     if (!valid) throw Error("\"" + anamorph::printable(cell.ToString()) + "\" is not a number");
@@ -64,9 +73,9 @@ std::vector<Deformation> checked_deformations(const std::vector<Numbers>& list) 
 }
 
 Numbers numbers_of(const Deformation& d) {
-    return {d.center.x,         d.center.y, d.extent.x, d.extent.y,
-            d.vector.x,         d.vector.y, d.vector.z, d.kernel == DeformationKernel::gaussian ? 0. : 1.,
-            d.enabled ? 1. : 0.};
+    return {d.center.x,          d.center.y, d.extent.x, d.extent.y,
+            d.vector.x,          d.vector.y, d.vector.z, d.kernel == DeformationKernel::gaussian ? 0. : 1.,
+            d.enabled ? 1. : 0., d.center_w, d.extent_w, static_cast<double>(d.side)};
 }
 
 std::vector<Numbers> read_deformations(const std::string& file_name) {
@@ -97,8 +106,8 @@ void write_deformations(const std::string& file_name, const std::vector<Numbers>
 std::vector<Numbers> numbers_in(vtkTable* table) {
     std::vector<Numbers> list;
     if (!table || table->GetNumberOfColumns() == 0) return list;
-    vtkAbstractArray* columns[9];
-    for (int c = 0; c < 9; ++c) {
+    vtkAbstractArray* columns[kNumbers];
+    for (int c = 0; c < kNumbers; ++c) {
         columns[c] = table->GetColumnByName(kColumns[c]);
         if (!columns[c] && c < kNeededColumns)
             throw Error(std::string("the table of deformations has no column ") + kColumns[c]);
@@ -107,7 +116,7 @@ std::vector<Numbers> numbers_in(vtkTable* table) {
                         std::to_string(columns[c]->GetNumberOfComponents()) + " components, but must have 1");
     }
     const vtkIdType rows = columns[0]->GetNumberOfTuples();
-    for (int c = 1; c < 9; ++c)
+    for (int c = 1; c < kNumbers; ++c)
         if (columns[c] && columns[c]->GetNumberOfTuples() != rows)
             throw Error(std::string("the table of deformations: column ") + kColumns[c] + " has " +
                         std::to_string(columns[c]->GetNumberOfTuples()) + " rows, column " + kColumns[0] +
@@ -116,8 +125,8 @@ std::vector<Numbers> numbers_in(vtkTable* table) {
         throw Error("the table of deformations has " + std::to_string(rows) +
                     " rows, but must have at most " + std::to_string(anamorph::kMaxDeformations));
     for (vtkIdType row = 0; row < rows; ++row) {
-        Numbers numbers{0, 0, 1, 1, 0, 0, 0, 0, 1};
-        for (int c = 0; c < 9; ++c) try {
+        Numbers numbers = kNothing;
+        for (int c = 0; c < kNumbers; ++c) try {
                 if (columns[c])
                     numbers[static_cast<std::size_t>(c)] = number_in(columns[c]->GetVariantValue(row), c);
             } catch (const Error& error) {
@@ -131,10 +140,13 @@ std::vector<Numbers> numbers_in(vtkTable* table) {
 
 void put_numbers(const std::vector<Numbers>& list, vtkTable* table) {
     table->Initialize();
-    for (std::size_t c = 0; c < 9; ++c) {
+    const bool deep = std::any_of(list.begin(), list.end(), [](const Numbers& numbers) {
+        return std::any_of(numbers.begin() + kPlainColumns, numbers.end(), [](double n) { return n != 0; });
+    });
+    for (int c = 0; c < (deep ? kNumbers : kPlainColumns); ++c) {
         vtkNew<vtkDoubleArray> column;
         column->SetName(kColumns[c]);
-        for (const Numbers& numbers : list) column->InsertNextValue(numbers[c]);
+        for (const Numbers& numbers : list) column->InsertNextValue(numbers[static_cast<std::size_t>(c)]);
         table->AddColumn(column);
     }
 }

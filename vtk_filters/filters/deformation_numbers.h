@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformations as the nine numbers of vtkAnamorphDeformationList, in tables and files. Functions throw
+// Deformations as the twelve numbers of vtkAnamorphDeformationList, in tables and files. Functions throw
 // anamorph::Error.
 #pragma once
 
@@ -13,7 +13,10 @@ class vtkTable;
 
 namespace anamorph_vtk {
 
-using Numbers = std::array<double, 9>;
+constexpr int kNumbers = 12;
+using Numbers = std::array<double, kNumbers>;
+/// The numbers of a deformation that moves nothing.
+inline constexpr Numbers kNothing = {0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0};
 
 /// Makes deformations of numbers. An error names what is wrong with an entry: "deformation 3: extent=0: must
 /// be ...".

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -86,6 +87,7 @@ class MeshOf final : public DeformedMesh {
 
     vtkIdType deform(const std::vector<Deformation>& list, vtkPointSet* out, Execution& execution,
                      double begin, double end) override {
+        follow_depth(list, out);
         std::vector<DeformationChange> changes = difference(m_list, list);
         if (changes.size() > list.size()) {
             // Starting from scratch is less work.
@@ -99,6 +101,7 @@ class MeshOf final : public DeformedMesh {
     }
 
     const std::vector<glm::dvec2>& parameters() const override { return m_parameters; }
+    const anamorph::PointDepths& depths() const override { return m_depths; }
 
   private:
     std::size_t size() const { return m_parameters.size(); }
@@ -135,10 +138,66 @@ class MeshOf final : public DeformedMesh {
         }
     }
 
+    /// Starts anew where a list begins to need depths or normals, or no longer does. mesh: the undeformed one.
+    void follow_depth(const std::vector<Deformation>& list, vtkPointSet* mesh) {
+        const bool deep = needs_depth(list), sided = needs_normals(list);
+        if (deep == m_deep && sided == m_sided) return;
+        m_depths = {};
+        if (deep) {
+            read_depths();
+            m_depths.normal.assign(size(), glm::dvec3(0.0));
+            if (sided) read_normals(mesh);
+        }
+        m_deep = deep;
+        m_sided = sided;
+        m_surface_normals.reset();
+        start();
+    }
+
+    void read_depths() {
+        if (!m_settings.on_plane && m_coordinates->GetNumberOfComponents() < 3)
+            throw Error("deformations with depth or side need texture coordinates of 3 components, not " +
+                        std::to_string(m_coordinates->GetNumberOfComponents()) +
+                        ": the third is the depth (or use the plane)");
+        const Triples points(m_source);
+        for (std::size_t i = 0; i < size(); ++i) {
+            const auto id = static_cast<vtkIdType>(i);
+            m_depths.w.push_back(m_settings.on_plane ? m_settings.plane.depth(points[id])
+                                                     : m_coordinates->GetComponent(id, 2));
+        }
+    }
+
+    /// The unit normals of the undeformed mesh: its own, or those of its cells; 0 where there is none.
+    void read_normals(vtkPointSet* mesh) {
+        find_given(mesh);
+        if (m_given) {
+            const Triples given(m_given);
+            for (std::size_t i = 0; i < size(); ++i) m_depths.normal[i] = given[static_cast<std::int64_t>(i)];
+        } else {
+            const SurfaceNormals of_cells(mesh, m_parameters,
+                                          m_settings.on_plane ? &m_settings.plane : nullptr, nullptr);
+            constexpr std::int64_t kAtOnce = anamorph::SurfaceSlopes::kMost;
+            double none[6][kAtOnce] = {};
+            std::vector<double> normals(3 * size());
+            for (std::int64_t first = 0; first < static_cast<std::int64_t>(size()); first += kAtOnce) {
+                const std::int64_t count = std::min(kAtOnce, static_cast<std::int64_t>(size()) - first);
+                of_cells.write({static_cast<int>(count), first, nullptr, none}, normals.data());
+            }
+            for (std::size_t i = 0; i < size(); ++i)
+                m_depths.normal[i] = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
+        }
+        for (glm::dvec3& n : m_depths.normal) {
+            const double length = glm::length(n);
+            n = length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0.0);
+        }
+    }
+
     /// The surface without deformations, of which nothing is written yet.
     void start() {
         const std::vector<glm::dvec2> parameters = with_finite_parameters(m_parameters);
-        if (std::optional<Axes> axes = axes_of(parameters))
+        if (m_deep)
+            m_surface.emplace<DeformedPoints>(parameters, m_depths, m_settings.options);
+        else if (std::optional<Axes> axes = axes_of(parameters))
             m_surface.emplace<DeformedGrid>(std::move(axes->u), std::move(axes->v), m_settings.options);
         else
             m_surface.emplace<DeformedPoints>(parameters, m_settings.options);
@@ -200,16 +259,22 @@ class MeshOf final : public DeformedMesh {
     }
     T* displacement() const { return m_displacement ? m_displacement->GetPointer(0) : nullptr; }
 
+    void find_given(vtkPointSet* mesh) {
+        m_given = mesh->GetPointData()->GetNormals();
+        if (m_given && (m_given->GetNumberOfComponents() != 3 ||
+                        m_given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
+            m_given = nullptr;
+    }
+
     /// Makes room for normals.
     void begin_normals(vtkPointSet* mesh) {
         if (!m_normals) {
-            m_given = mesh->GetPointData()->GetNormals();
-            if (m_given && (m_given->GetNumberOfComponents() != 3 ||
-                            m_given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
-                m_given = nullptr;
+            find_given(mesh);
+            // How the normals that sides go by change along the surface is known from cells alone.
             if (!m_surface_normals)
                 m_surface_normals.emplace(mesh, m_parameters,
-                                          m_settings.on_plane ? &m_settings.plane : nullptr, m_given);
+                                          m_settings.on_plane ? &m_settings.plane : nullptr,
+                                          m_sided ? nullptr : m_given.Get(), m_deep ? &m_depths : nullptr);
             m_normals = new_array(size());
             m_normals->SetName(m_given && m_given->GetName() ? m_given->GetName() : "Normals");
         }
@@ -282,7 +347,9 @@ class MeshOf final : public DeformedMesh {
     vtkSmartPointer<vtkDataArray> m_source, m_coordinates;
     vtkSmartPointer<vtkAOSDataArrayTemplate<T>> m_base;
     std::vector<glm::dvec2> m_parameters;
-    std::vector<vtkIdType> m_unmoved;  ///< points whose parameters are not finite
+    std::vector<vtkIdType> m_unmoved;      ///< points whose parameters are not finite
+    bool m_deep = false, m_sided = false;  ///< does the list need depths, and normals?
+    anamorph::PointDepths m_depths;        ///< if so
     std::variant<std::monostate, DeformedGrid, DeformedPoints> m_surface;
     std::optional<FormulaDisplacement> m_formula;
     FormulaOffsets m_offsets;  ///< of all points, which the surface refers to

@@ -60,6 +60,8 @@ class DeformedMesh {
     virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* out,
                              Execution& execution, double progress_begin, double progress_end) = 0;
 
+    /// The depths and normals of all points; none where the list needs none.
+    virtual const anamorph::PointDepths& depths() const = 0;
     /// The parameters of all points; those of points that are not moved are not finite.
     virtual const std::vector<glm::dvec2>& parameters() const = 0;
 };

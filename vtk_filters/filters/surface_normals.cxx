@@ -93,8 +93,9 @@ vtkUnsignedCharArray* ghosts_of(vtkPointSet* mesh) {
 /// What the corners of cells need of the undeformed mesh.
 class Cells {
   public:
-    Cells(const Triples& points, const std::vector<glm::dvec2>& parameters)
-        : m_points(points), m_parameters(parameters) {}
+    Cells(const Triples& points, const std::vector<glm::dvec2>& parameters,
+          const anamorph::PointDepths* depths)
+        : m_points(points), m_parameters(parameters), m_depths(depths) {}
 
     /// The corners that a cell has at a point, which is the k-th of the sums.
     void add_corners(vtkIdType count, const vtkIdType* cell, std::int64_t point, int k,
@@ -114,7 +115,14 @@ class Cells {
     glm::dvec2 parameter(vtkIdType id) const { return m_parameters[static_cast<std::size_t>(id)]; }
 
     anamorph::CornerSums::Edge edge(vtkIdType from, vtkIdType to) const {
-        return {m_points[to] - m_points[from], parameter(to) - parameter(from)};
+        anamorph::CornerSums::Edge edge{m_points[to] - m_points[from], parameter(to) - parameter(from)};
+        if (m_depths) {
+            const auto a = static_cast<std::size_t>(from), b = static_cast<std::size_t>(to);
+            const double depth = m_depths->w[b] - m_depths->w[a];
+            edge.depth = std::isfinite(depth) ? depth : 0;
+            edge.normal = m_depths->normal[b] - m_depths->normal[a];
+        }
+        return edge;
     }
 
     /// The neighbour of a corner, one way around or the other.
@@ -139,6 +147,7 @@ class Cells {
 
     const Triples& m_points;
     const std::vector<glm::dvec2>& m_parameters;
+    const anamorph::PointDepths* m_depths;
 };
 
 }  // namespace
@@ -175,10 +184,12 @@ void for_each_surface_cell(vtkPointSet* mesh,
 }
 
 SurfaceNormals::SurfaceNormals(vtkPointSet* mesh, const std::vector<glm::dvec2>& parameters,
-                               const anamorph::ParameterPlane* plane, vtkDataArray* normals)
+                               const anamorph::ParameterPlane* plane, vtkDataArray* normals,
+                               const anamorph::PointDepths* depths)
     : m_points(mesh->GetPoints()->GetData()),
       m_normals(normals),
       m_parameters(parameters),
+      m_depths(depths),
       m_on_plane(plane != nullptr) {
     if (plane) m_plane = *plane;
     m_exact = plane && normals;
@@ -220,11 +231,11 @@ void SurfaceNormals::turn(const anamorph::SurfaceSlopes& slopes, Normals& to) co
         const glm::dvec3 n = m_normals[slopes.point(k)];
         for (int c = 0; c < 3; ++c) to[c][k] = n[c];
     }
-    anamorph::turn_normals(slopes, m_plane.gradient_u(), m_plane.gradient_v(), to);
+    anamorph::turn_normals(slopes, m_plane.gradient_u(), m_plane.gradient_v(), to, m_plane.normal());
 }
 
 void SurfaceNormals::add_corners(const anamorph::SurfaceSlopes& slopes, Normals& to) const {
-    const Cells cells(m_points, m_parameters);
+    const Cells cells(m_points, m_parameters, m_depths);
     anamorph::CornerSums sums(slopes);
     CellReader reader;
     for (int k = 0; k < slopes.count; ++k) {

@@ -2,12 +2,13 @@
 // Unit normals of a deformed mesh at its points.
 //
 // With normals of the undeformed mesh and parameters of a plane they are exact: space moves with the Jacobian
-// J = I + D_u grad(u)^T + D_v grad(v)^T, and a normal n becomes cof(J) n, the cross product of two tangents
-// a, b with a x b = n after J.
+// J = I + D_u grad(u)^T + D_v grad(v)^T + D_w grad(w)^T, and a normal n becomes cof(J) n, the cross product of two
+// tangents a, b with a x b = n after J. Without bumps of one side, that is.
 //
 // Otherwise they are sums over the corners of the cells at a point, weighted by the corner's angle (Thuermer
 // and Wuethrich 1998): the edges e of a corner are the surface's tangents there, and become
-// e + D_u du + D_v dv, with the exact derivatives of the displacement and the edge's change of parameters.
+// e + D_u du + D_v dv, with the exact derivatives of the displacement and the edge's change of parameters, and so on
+// by depth and normal where bumps have these.
 // This is exact on a plane. Sums are in fixed point, so the order of the cells does not matter; where cells
 // of other pieces are missing (no ghost cells), their corners are.
 //
@@ -57,9 +58,11 @@ class Triples {
 class SurfaceNormals {
   public:
     /// mesh: undeformed. parameters: those of all its points, to be kept as long as this; cells leave out
-    /// those not finite. plane: null for texture coordinates. normals: of the undeformed mesh, or null.
+    /// those not finite. plane: null for texture coordinates. normals: of the undeformed mesh, or null. depths: of
+    /// all points, to be kept as long as this, or null where slopes have no derivatives by them.
     SurfaceNormals(vtkPointSet* mesh, const std::vector<glm::dvec2>& parameters,
-                   const anamorph::ParameterPlane* plane, vtkDataArray* normals);
+                   const anamorph::ParameterPlane* plane, vtkDataArray* normals,
+                   const anamorph::PointDepths* depths = nullptr);
 
     /// Writes the normals of some points to out, three numbers a point of the mesh. From any thread.
     template <class T>
@@ -76,6 +79,7 @@ class SurfaceNormals {
     vtkSmartPointer<vtkUnsignedCharArray> m_ghosts;
     Triples m_points, m_normals;
     const std::vector<glm::dvec2>& m_parameters;
+    const anamorph::PointDepths* m_depths;
     bool m_on_plane, m_exact;
     anamorph::ParameterPlane m_plane;
     std::vector<std::int64_t> m_first;

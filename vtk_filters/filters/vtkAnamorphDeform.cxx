@@ -17,6 +17,7 @@
 #include "deformation_numbers.h"
 #include "deformed_mesh.h"
 #include "execution.h"
+#include "explicit_points.h"
 #include "input_times.h"
 #include "vtkAnamorphDeformationList.h"
 #include "vtkCompositeDataIterator.h"
@@ -44,18 +45,20 @@ using anamorph::Error;
 using anamorph::FormulaDisplacement;
 using anamorph_vtk::DeformedMesh;
 using anamorph_vtk::distributed;
+using anamorph_vtk::kNumbers;
 using anamorph_vtk::Numbers;
 
-/// A leaf of the input and that of the output, a shallow copy of it.
+/// A leaf of the input, with explicit points, and that of the output, a shallow copy of it.
 struct Leaf {
-    vtkPointSet *in, *out;
+    vtkSmartPointer<vtkPointSet> in;
+    vtkPointSet* out;
 };
 
 /// The deformations of the tables of all ranks: those of one if all that have any have the same.
 std::vector<Numbers> of_all_ranks(const std::vector<Numbers>& own, bool failed,
                                   vtkMultiProcessController* controller) {
     const auto ranks = static_cast<std::size_t>(controller->GetNumberOfProcesses());
-    const vtkIdType count = failed ? -1 : static_cast<vtkIdType>(9 * own.size());
+    const vtkIdType count = failed ? -1 : static_cast<vtkIdType>(kNumbers * own.size());
     std::vector<vtkIdType> counts(ranks), offsets(ranks);
     controller->AllGather(&count, counts.data(), 1);
     vtkIdType total = 0;
@@ -71,9 +74,10 @@ std::vector<Numbers> of_all_ranks(const std::vector<Numbers>& own, bool failed,
     controller->AllGatherV(flat.data(), all.data(), count, counts.data(), offsets.data());
     std::vector<std::vector<Numbers>> lists;
     for (std::size_t r = 0; r < ranks; ++r) {
-        std::vector<Numbers> list(static_cast<std::size_t>(counts[r]) / 9);
+        std::vector<Numbers> list(static_cast<std::size_t>(counts[r]) / kNumbers);
         for (std::size_t i = 0; i < list.size(); ++i)
-            std::copy_n(all.begin() + offsets[r] + static_cast<std::ptrdiff_t>(9 * i), 9, list[i].begin());
+            std::copy_n(all.begin() + offsets[r] + static_cast<std::ptrdiff_t>(kNumbers * i), kNumbers,
+                        list[i].begin());
         if (!list.empty()) lists.push_back(std::move(list));
     }
     if (lists.empty()) return {};
@@ -151,6 +155,14 @@ void put(glm::dvec3 v, double* to) {
     for (int c = 0; c < 3; ++c) to[c] = v[c];
 }
 
+/// The numbers [begin, end) of all rows.
+vtkSmartPointer<vtkDoubleArray> columns_of(const std::vector<Numbers>& list, int begin, int end) {
+    auto columns = vtkSmartPointer<vtkDoubleArray>::New();
+    columns->SetNumberOfComponents(end - begin);
+    for (const Numbers& numbers : list) columns->InsertNextTuple(numbers.data() + begin);
+    return columns;
+}
+
 void add_field_value(vtkDataObject* object, const char* name, double value) {
     // The container is shared with the input, the arrays stay so.
     vtkNew<vtkFieldData> fields;
@@ -165,8 +177,30 @@ void add_field_value(vtkDataObject* object, const char* name, double value) {
 }  // namespace
 
 struct vtkAnamorphDeform::Kept {
+    /// A grid whose points are implied, with explicit ones, which stay while it does.
+    struct Grid {
+        vtkMTimeType time = 0;
+        vtkSmartPointer<vtkPointSet> points;
+    };
+
     std::vector<std::unique_ptr<DeformedMesh>> meshes;  ///< by leaf
+    std::vector<Grid> grids;                            ///< by leaf
     anamorph_vtk::AutomaticPlane plane;
+    std::vector<vtkSmartPointer<vtkPointSet>> deformed;  ///< by leaf
+    anamorph::ParameterPlane used_plane;
+    bool on_plane = false;
+
+    vtkSmartPointer<vtkPointSet> with_explicit_points(vtkDataObject* data, std::size_t leaf) {
+        if (auto* points = vtkPointSet::SafeDownCast(data)) return points;
+        if (grids.size() <= leaf) grids.resize(leaf + 1);
+        // Times are given once only, so that of the grid tells it from others too.
+        const vtkMTimeType time = anamorph_vtk::time_of_points(data);
+        if (grids[leaf].time != time) {
+            grids[leaf] = {};
+            grids[leaf] = {time, anamorph_vtk::with_explicit_points(data)};
+        }
+        return grids[leaf].points;
+    }
 };
 
 vtkAnamorphDeform::vtkAnamorphDeform()
@@ -211,6 +245,7 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "ErrorBound: " << this->ErrorBound << "\n"
        << indent << "NumberOfPointsComputed: " << this->NumberOfPointsComputed << "\n"
        << indent << "NumberOfUndefinedPoints: " << this->NumberOfUndefinedPoints << "\n"
+       << indent << "SelectedDeformation: " << this->SelectedDeformation << "\n"
        << indent << "Controller: " << this->Controller.Get() << "\n"
        << indent << "DeformationList:\n";
     this->DeformationList->PrintSelf(os, indent.GetNextIndent());
@@ -267,12 +302,27 @@ void vtkAnamorphDeform::RemoveAllDeformations() {
     this->DeformationList->RemoveAllDeformations();
 }
 
+void vtkAnamorphDeform::SetDepth(int position, double center_w, double extent_w, double side) {
+    this->DeformationList->SetDepth(position, center_w, extent_w, side);
+}
+void vtkAnamorphDeform::SetNumberOfDepths(int number) {
+    this->DeformationList->SetNumberOfDepths(number);
+}
+int vtkAnamorphDeform::GetNumberOfDepths() {
+    return this->DeformationList->GetNumberOfDepths();
+}
+double* vtkAnamorphDeform::GetDepth(int position) {
+    return this->DeformationList->GetDepth(position);
+}
+
 vtkDoubleArray* vtkAnamorphDeform::GetAllDeformations() {
-    this->AllDeformations = vtkSmartPointer<vtkDoubleArray>::New();
-    this->AllDeformations->SetNumberOfComponents(9);
-    for (const Numbers& numbers : this->DeformationList->GetAll())
-        this->AllDeformations->InsertNextTuple(numbers.data());
+    this->AllDeformations = columns_of(this->DeformationList->GetAll(), 0, 9);
     return this->AllDeformations;
+}
+
+vtkDoubleArray* vtkAnamorphDeform::GetAllDepths() {
+    this->AllDepths = columns_of(this->DeformationList->GetAll(), 9, kNumbers);
+    return this->AllDepths;
 }
 
 int vtkAnamorphDeform::ReadDeformations(const char* name) {
@@ -316,6 +366,21 @@ vtkPolyData* vtkAnamorphDeform::GetOverlay() {
     return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
 }
 
+double* vtkAnamorphDeform::GetSelectedHeights() {
+    std::fill_n(this->SelectedHeights, 2, 0.0);
+    const std::vector<Numbers>& all = this->DeformationList->GetAll();
+    const int position = this->SelectedDeformation;
+    if (position < 0 || position >= static_cast<int>(all.size()) || !this->Meshes->on_plane)
+        return this->SelectedHeights;
+    anamorph_vtk::guarded(this, [&] {
+        const Deformation bump =
+            anamorph_vtk::checked_deformations({all[static_cast<std::size_t>(position)]})[0];
+        anamorph_vtk::find_heights(bump, this->Meshes->meshes, this->Meshes->deformed,
+                                   this->Meshes->used_plane, this->SelectedHeights);
+    });
+    return this->SelectedHeights;
+}
+
 vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
                                               vtkInformationVector* outputs) {
     if (!anamorph_vtk::has_inputs(this, {"the surface"})) return 0;
@@ -324,10 +389,7 @@ vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInform
 
 int vtkAnamorphDeform::FillInputPortInformation(int port, vtkInformation* info) {
     if (port == 0) {
-        // Trees first: the pipeline then leaves the leaves to us, who have to see them all.
-        info->Remove(INPUT_REQUIRED_DATA_TYPE());
-        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
-        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+        anamorph_vtk::require_points(info);
     } else {
         info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
     }
@@ -344,9 +406,10 @@ int vtkAnamorphDeform::RequestDataObject(vtkInformation*, vtkInformationVector**
                                          vtkInformationVector* outputs) {
     vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
     if (!input) return 0;
-    anamorph_vtk::make_output(outputs->GetInformationObject(0), input);
-    anamorph_vtk::make_output(outputs->GetInformationObject(1), vtkNew<vtkPolyData>());
-    return 1;
+    return anamorph_vtk::guarded(this, [&] {
+        anamorph_vtk::make_output_of_points(outputs->GetInformationObject(0), input, "the surface");
+        anamorph_vtk::make_output(outputs->GetInformationObject(1), vtkNew<vtkPolyData>());
+    });
 }
 
 int vtkAnamorphDeform::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
@@ -361,7 +424,9 @@ int vtkAnamorphDeform::RequestUpdateExtent(vtkInformation*, vtkInformationVector
     using Pipeline = vtkStreamingDemandDrivenPipeline;
     // Cells beyond a cut have corners at its points.
     vtkInformation* input = inputs[0]->GetInformationObject(0);
-    if (this->ComputeNormals && input && input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+    const std::vector<Numbers>& own = this->DeformationList->GetAll();
+    const bool sided = std::any_of(own.begin(), own.end(), [](const Numbers& n) { return n[11] != 0; });
+    if ((this->ComputeNormals || sided) && input && input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
         input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
                    input->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
     // Deformations reach across pieces.
@@ -382,6 +447,8 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
                 anamorph_vtk::hand_over_time({inputs, 2}, vtkDataObject::GetData(outputs, port));
         } catch (...) {
             this->Meshes->meshes.clear();
+            this->Meshes->deformed.clear();
+            this->Meshes->grids.clear();
             throw;
         }
     };
@@ -413,9 +480,9 @@ struct vtkAnamorphDeform::Run {
 
 void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
     vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-    const auto add = [&](vtkPointSet* in, vtkPointSet* out) {
-        out->ShallowCopy(in);
-        leaves.push_back({in, out});
+    const auto add = [&](vtkDataObject* in, vtkPointSet* out) {
+        leaves.push_back({filter.Meshes->with_explicit_points(in, leaves.size()), out});
+        out->ShallowCopy(leaves.back().in);
     };
     if (auto* tree = vtkDataObjectTree::SafeDownCast(input)) {
         auto* copies = vtkDataObjectTree::SafeDownCast(output);
@@ -424,17 +491,20 @@ void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
         const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
         for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
             vtkDataObject* leaf = iterator->GetCurrentDataObject();
-            const auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-            if (auto* points = vtkPointSet::SafeDownCast(leaf))
-                add(points, vtkPointSet::SafeDownCast(copy));
-            else
+            if (const auto points = anamorph_vtk::new_point_set_like(leaf)) {
+                add(leaf, points);
+                copies->SetDataSet(iterator, points);
+            } else {
+                const auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
                 copy->ShallowCopy(leaf);
-            copies->SetDataSet(iterator, copy);
+                copies->SetDataSet(iterator, copy);
+            }
         }
     } else {
-        add(vtkPointSet::SafeDownCast(input), vtkPointSet::SafeDownCast(output));
+        add(input, vtkPointSet::SafeDownCast(output));
     }
     filter.Meshes->meshes.resize(leaves.size());
+    filter.Meshes->grids.resize(leaves.size());
 }
 
 void vtkAnamorphDeform::Run::choose_plane() {
@@ -532,7 +602,8 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
     std::vector<anamorph_vtk::OverlayMesh> meshes;
     for (std::size_t i = 0; i < leaves.size(); ++i)
         if (filter.Meshes->meshes[i])
-            meshes.push_back({leaves[i].in, &filter.Meshes->meshes[i]->parameters()});
+            meshes.push_back(
+                {leaves[i].in, &filter.Meshes->meshes[i]->parameters(), &filter.Meshes->meshes[i]->depths()});
     const bool whole = settings.on_plane && !distributed(filter.Controller);
     draw_overlay(list, settings.options, formula, meshes, whole ? &settings.plane : nullptr, overlay);
 }
@@ -540,8 +611,10 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
 void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
     this->NumberOfPointsComputed = 0;
     this->NumberOfUndefinedPoints = 0;
+    this->Meshes->deformed.clear();  // so that the meshes alone hold the points that they write
     Run run{*this, outputs};
-    run.copy_leaves(vtkDataObject::GetData(inputs[0]));
+    const auto input = anamorph_vtk::without_levels(vtkDataObject::GetData(inputs[0]));
+    run.copy_leaves(input);
     // What all ranks do together comes first: one that then fails does not keep the others waiting.
     const std::vector<Numbers> more = table_of(vtkTable::GetData(inputs[1]), this->Controller);
     run.choose_plane();
@@ -550,4 +623,11 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     run.settle_precision();
     run.deform_leaves();
     run.draw_overlay_of_meshes();
+    for (const Leaf& leaf : run.leaves) {
+        // Their points alone: who has the output may change its arrays.
+        this->Meshes->deformed.push_back(vtkSmartPointer<vtkPointSet>::Take(leaf.out->NewInstance()));
+        this->Meshes->deformed.back()->SetPoints(leaf.out->GetPoints());
+    }
+    this->Meshes->on_plane = run.settings.on_plane;
+    this->Meshes->used_plane = run.settings.plane;
 }

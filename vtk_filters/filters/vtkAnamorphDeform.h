@@ -17,8 +17,9 @@
  * turns, unless the surface has become flat along one of them; an execution without AutomaticPlane forgets
  * them.
  *
- * Input: any vtkPointSet, or multiblock data and collections of partitioned data sets; leaves of other types
- * are passed on. Points that have no finite parameters stay. What comes out shares all arrays but the points,
+ * Input: any vtkPointSet; image data and rectilinear grids, which come out as structured grids with explicit
+ * points; multiblock data and collections of partitioned data sets, and AMR, which comes out as a multiblock of its
+ * levels. Leaves of other types are passed on. Points that have no finite parameters stay. What comes out shares all arrays but the points,
  * their normals and the Displacement array. Cell normals are dropped, and point normals unless ComputeNormals
  * is on. Normals are exact (from the kernels' derivatives) for a plane's parameters if the input has normals
  * or lies in the plane; otherwise the surface's own tangents are those of its cells (and the displacement's
@@ -80,14 +81,24 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void MoveDeformation(int from, int to);
     void RemoveDeformation(int position);
     void RemoveAllDeformations();
+    /**
+     * The depth and the side of a deformation (vtkAnamorphDeformationList::SetDepth). The depth w of a point is its distance
+     * from the plane of (u, v), to the side of Axis1 x Axis2 (of the automatic plane: along x, y or z), or the third component
+     * of texture coordinates; normals are those of the undeformed surface: its own, or else those of its cells.
+     */
+    void SetDepth(int position, double center_w, double extent_w, double side = 0);
+    void SetNumberOfDepths(int number);
+    int GetNumberOfDepths();
+    double* GetDepth(int position) VTK_SIZEHINT(3);
     ///@}
 
     ///@{
     /**
-     * For hosts of tables and files: the list's numbers, nine components each; the list read from a file, or
+     * For hosts of tables and files: the list's numbers, nine components each, and those of depths, three; the list read from a file, or
      * written to one (by rank 0). Without a name they do nothing. They return 1, or 0 after an error.
      */
     vtkDoubleArray* GetAllDeformations();
+    vtkDoubleArray* GetAllDepths();
     int ReadDeformations(const char* name);
     int WriteDeformations(const char* name);
     ///@}
@@ -243,6 +254,18 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     vtkGetMacro(NumberOfUndefinedPoints, vtkIdType);
     ///@}
 
+    ///@{
+    /**
+     * For handles of hosts: how far from the plane of (u, v) the deformed surface is at the centre, and at the centre plus the extent,
+     * of a deformation of the filter's own list, by the last execution; at the centre, of several points over each other, where the
+     * deformation moves it most. 0 where no point of this rank is moved by it, and for texture coordinates. Selecting another
+     * deformation does not make the filter execute. The pointer is valid until the next call.
+     */
+    void SetSelectedDeformation(int position) { this->SelectedDeformation = position < 0 ? 0 : position; }
+    int GetSelectedDeformation() { return this->SelectedDeformation; }
+    double* GetSelectedHeights() VTK_SIZEHINT(2);
+    ///@}
+
     vtkMTimeType GetMTime() override;
 
   protected:
@@ -266,7 +289,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void SetText(std::string& member, const char* text);
 
     vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
-    vtkSmartPointer<vtkDoubleArray> AllDeformations;
+    vtkSmartPointer<vtkDoubleArray> AllDeformations, AllDepths;
     vtkSmartPointer<vtkMultiProcessController> Controller;
     char* FileName = nullptr;
     std::string FormulaX, FormulaY, FormulaZ, FormulaDefinitions;
@@ -278,6 +301,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     double Cutoff = 1e-7;
     bool ComputeNormals = true, ComputeDisplacement = true, GenerateOverlay = false;
     int OutputPointsPrecision = DEFAULT_PRECISION;
+    int SelectedDeformation = 0;
+    double SelectedHeights[2] = {};
     double ErrorBound = 0;
     vtkIdType NumberOfPointsComputed = 0, NumberOfUndefinedPoints = 0;
 

@@ -16,9 +16,10 @@ vtkObjectFactoryNewMacro(vtkAnamorphDeformationList);
 namespace {
 
 using Numbers = vtkAnamorphDeformationList::Numbers;
+using anamorph_vtk::kNothing;
 
 constexpr int kMost = static_cast<int>(anamorph::kMaxDeformations);
-constexpr Numbers kNothing = {0, 0, 1, 1, 0, 0, 0, 0, 1};
+constexpr int kPlain = 9;  ///< the numbers without those of the depth
 
 /// Compares bits, so that NaN equals itself and setting it again changes nothing.
 bool same(const Numbers& a, const Numbers& b) {
@@ -76,7 +77,7 @@ void vtkAnamorphDeformationList::InsertDeformation(int position, double center_u
                                                    double z, double kernel, double enabled) {
     if (!this->IsPosition(position, std::min(this->GetNumberOfDeformations() + 1, kMost))) return;
     this->List.insert(this->List.begin() + position,
-                      Numbers{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled});
+                      Numbers{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled, 0, 0, 0});
     this->Modified();
 }
 
@@ -84,8 +85,9 @@ void vtkAnamorphDeformationList::SetDeformation(int position, double center_u, d
                                                 double extent_u, double extent_v, double x, double y,
                                                 double z, double kernel, double enabled) {
     if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
-    const Numbers numbers{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled};
     Numbers& place = this->List[static_cast<std::size_t>(position)];
+    const Numbers numbers{center_u, center_v, extent_u, extent_v, x,         y,
+                          z,        kernel,   enabled,  place[9], place[10], place[11]};
     if (same(place, numbers)) return;
     place = numbers;
     this->Modified();
@@ -126,15 +128,45 @@ void vtkAnamorphDeformationList::RemoveAllDeformations() {
 }
 
 void vtkAnamorphDeformationList::GetDeformation(int position, double numbers[9]) {
-    std::fill(numbers, numbers + 9, std::numeric_limits<double>::quiet_NaN());
+    std::fill(numbers, numbers + kPlain, std::numeric_limits<double>::quiet_NaN());
     if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
     const Numbers& place = this->List[static_cast<std::size_t>(position)];
-    std::copy(place.begin(), place.end(), numbers);
+    std::copy_n(place.begin(), kPlain, numbers);
 }
 
 double* vtkAnamorphDeformationList::GetDeformation(int position) {
     this->GetDeformation(position, this->Answer);
     return this->Answer;
+}
+
+void vtkAnamorphDeformationList::SetDepth(int position, double center_w, double extent_w, double side) {
+    if (!this->IsPosition(position, kMost)) return;
+    if (position >= this->GetNumberOfDeformations()) this->SetNumberOfDeformations(position + 1);
+    Numbers& place = this->List[static_cast<std::size_t>(position)];
+    Numbers numbers = place;
+    std::ranges::copy(std::array{center_w, extent_w, side}, numbers.begin() + kPlain);
+    if (same(place, numbers)) return;
+    place = numbers;
+    this->Modified();
+}
+
+void vtkAnamorphDeformationList::SetNumberOfDepths(int number) {
+    for (int i = std::max(number, 0); i < this->GetNumberOfDeformations(); ++i) this->SetDepth(i, 0, 0, 0);
+}
+
+int vtkAnamorphDeformationList::GetNumberOfDepths() {
+    const auto last = std::find_if(this->List.rbegin(), this->List.rend(), [](const Numbers& numbers) {
+        return std::any_of(numbers.begin() + kPlain, numbers.end(), [](double n) { return n != 0; });
+    });
+    return static_cast<int>(this->List.rend() - last);
+}
+
+double* vtkAnamorphDeformationList::GetDepth(int position) {
+    std::fill(this->Answer + kPlain, std::end(this->Answer), std::numeric_limits<double>::quiet_NaN());
+    if (this->IsPosition(position, this->GetNumberOfDeformations()))
+        std::copy(this->List[static_cast<std::size_t>(position)].begin() + kPlain,
+                  this->List[static_cast<std::size_t>(position)].end(), this->Answer + kPlain);
+    return this->Answer + kPlain;
 }
 
 int vtkAnamorphDeformationList::ReadFile(const char* name) {

@@ -34,6 +34,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     enum Kernels { GAUSSIAN = 0, WENDLAND_C2 = 1 };
+    enum Sides { BOTH_SIDES = 0, FRONT = 1, BACK = 2 };
 
     ///@{
     /**
@@ -72,6 +73,21 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
+     * The depth of a deformation: three more numbers, center_w extent_w side, all 0 of a new one. With an extent_w that is
+     * not 0, ((w - center_w) / extent_w)^2 is added to r^2, where w is the depth of the point: it moves what is near in depth
+     * alone. Side is 0 (both), 1 (front: where the surface's normal is within 90 degrees of V, in full within 60) or 2
+     * (back, as the front of -V). SetDepth at a position beyond the list appends deformations that move nothing;
+     * SetNumberOfDepths makes those from `number` on 0. The pointer is valid until the next call.
+     */
+    void SetDepth(int position, double center_w, double extent_w, double side = 0);
+    void SetNumberOfDepths(int number);
+    /** The number of deformations up to the last one with a depth or side. */
+    int GetNumberOfDepths();
+    double* GetDepth(int position) VTK_SIZEHINT(3);
+    ///@}
+
+    ///@{
+    /**
      * Read and write the list as a file, CSV if its name ends in .csv, else JSON. A file that is written reads
      * back to the bit. Return 1, or 0 after an error; reading then leaves the list as it is.
      */
@@ -82,7 +98,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
     ///@{
     /**
      * Read and write the list as a table with the columns named above; kernel (a number, or gaussian or wendland_c2)
-     * and enabled may be missing. ReadTable returns 1, or 0 after an error, which leaves the list as it is.
+     * and enabled may be missing, and so may center_w, extent_w and side (a number, or both, front or back). ReadTable returns 1, or 0 after an error, which leaves the list as it is.
      */
     int ReadTable(vtkTable* table);
     void WriteTable(vtkTable* table);
@@ -91,7 +107,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
     void DeepCopy(vtkAnamorphDeformationList* other);
 
 #ifndef __VTK_WRAP__
-    using Numbers = std::array<double, 9>;
+    /// The nine numbers, and the three of the depth.
+    using Numbers = std::array<double, 12>;
     const std::vector<Numbers>& GetAll() const {
         return this->List;
     }
@@ -107,8 +124,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     bool IsPosition(int position, int end);
 
-    std::vector<std::array<double, 9>> List;
-    double Answer[9] = {};
+    std::vector<std::array<double, 12>> List;
+    double Answer[12] = {};
 };
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "anamorph/deform/key_frames.h"
 #include "anamorph/parameter/parameter.h"
 #include "execution.h"
+#include "explicit_points.h"
 #include "smp_for.h"
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
@@ -167,7 +169,7 @@ using Masks = std::vector<std::vector<float>>;
 
 /// One array to blend.
 struct Job {
-    std::vector<vtkDataArray*> from;  ///< one for each input
+    std::vector<vtkSmartPointer<vtkDataArray>> from;  ///< one for each input
     vtkSmartPointer<vtkDataArray> to;
     std::shared_ptr<const Masks> masks;
     bool unit = false;  ///< vectors of length 1
@@ -218,11 +220,11 @@ class Blend {
     explicit Blend(Options options) : m_options(std::move(options)) {}
 
     /// `output` is a shallow copy of the base.
-    void add(const std::vector<vtkPointSet*>& inputs, vtkPointSet* output) {
+    void add(const std::vector<vtkSmartPointer<vtkPointSet>>& inputs, vtkPointSet* output) {
         const auto point_masks = std::make_shared<Masks>(masks_of(inputs));
         add_points(inputs, output, point_masks);
         std::vector<vtkDataSetAttributes*> point_data, cell_data;
-        for (vtkPointSet* input : inputs) {
+        for (const auto& input : inputs) {
             point_data.push_back(input->GetPointData());
             cell_data.push_back(input->GetCellData());
         }
@@ -251,12 +253,12 @@ class Blend {
     }
 
   private:
-    void add_points(const std::vector<vtkPointSet*>& inputs, vtkPointSet* output,
+    void add_points(const std::vector<vtkSmartPointer<vtkPointSet>>& inputs, vtkPointSet* output,
                     const std::shared_ptr<const Masks>& masks) {
         if (output->GetNumberOfPoints() == 0) return;
         Job job;
         bool all_float = true;
-        for (vtkPointSet* input : inputs) {
+        for (const auto& input : inputs) {
             job.from.push_back(input->GetPoints()->GetData());
             all_float = all_float && job.from.back()->GetDataType() == VTK_FLOAT;
         }
@@ -317,10 +319,10 @@ class Blend {
 
     static bool is_shared(const Job& job) {
         return std::all_of(job.from.begin(), job.from.end(),
-                           [&](auto* array) { return array == job.from.front(); });
+                           [&](const auto& array) { return array == job.from.front(); });
     }
 
-    Masks masks_of(const std::vector<vtkPointSet*>& inputs) const {
+    Masks masks_of(const std::vector<vtkSmartPointer<vtkPointSet>>& inputs) const {
         Masks masks(inputs.size());
         for (std::size_t i = 0; m_options.deltas && i < std::min(inputs.size(), m_options.masks.size()); ++i)
             if (!m_options.masks[i].empty() && i != m_options.base)
@@ -328,7 +330,7 @@ class Blend {
         return masks;
     }
 
-    std::vector<float> mask_of(const std::vector<vtkPointSet*>& inputs, std::size_t i,
+    std::vector<float> mask_of(const std::vector<vtkSmartPointer<vtkPointSet>>& inputs, std::size_t i,
                                const std::string& name) const {
         vtkDataArray* array = inputs[m_options.base]->GetPointData()->GetArray(name.c_str());
         if (!array) array = inputs[i]->GetPointData()->GetArray(name.c_str());
@@ -357,7 +359,7 @@ class Blend {
         const int components = job.to->GetNumberOfComponents();
         const vtkIdType points = job.to->GetNumberOfTuples();
         std::vector<Values<T>> from;
-        for (vtkDataArray* array : job.from) from.emplace_back(array);
+        for (const auto& array : job.from) from.emplace_back(array);
         T* to = vtkAOSDataArrayTemplate<T>::FastDownCast(job.to)->GetPointer(0);
         for (vtkIdType first = 0; first < points; first += kStretch) {
             const vtkIdType count = std::min(kStretch, points - first);
@@ -442,7 +444,7 @@ void check_class(const std::string& part, std::size_t i, vtkDataObject* object, 
 }
 
 /// The leaves of all inputs; the same ones, or an Error.
-LeavesByInput matching_leaves(const std::vector<vtkDataObject*>& inputs, std::size_t base) {
+LeavesByInput matching_leaves(const std::vector<vtkSmartPointer<vtkDataObject>>& inputs, std::size_t base) {
     LeavesByInput leaves;
     for (vtkDataObject* input : inputs) leaves.push_back(leaves_of(input));
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -454,18 +456,34 @@ LeavesByInput matching_leaves(const std::vector<vtkDataObject*>& inputs, std::si
     return leaves;
 }
 
-/// One leaf of all inputs; nothing if it is missing in all of them.
-std::vector<vtkPointSet*> point_sets(const LeavesByInput& leaves, std::size_t leaf, std::size_t base) {
+/// Do two data sets have the same points, to the bit?
+bool have_same_points(vtkPointSet* a, vtkPointSet* b) {
+    vtkDataArray *x = a->GetPoints()->GetData(), *y = b->GetPoints()->GetData();
+    return x->GetDataType() == y->GetDataType() && x->GetNumberOfValues() == y->GetNumberOfValues() &&
+           std::memcmp(x->GetVoidPointer(0), y->GetVoidPointer(0),
+                       static_cast<std::size_t>(x->GetNumberOfValues()) *
+                           static_cast<std::size_t>(x->GetDataTypeSize())) == 0;
+}
+
+/// One leaf of all inputs; nothing if it is missing in all of them. Grids with the same axes share their points.
+std::vector<vtkSmartPointer<vtkPointSet>> point_sets(const LeavesByInput& leaves, std::size_t leaf,
+                                                     std::size_t base) {
     vtkDataObject* wanted = leaves[base][leaf].data;
     const std::string part = part_of(leaves[base][leaf]);
-    std::vector<vtkPointSet*> result;
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-        check_class(part, i, leaves[i][leaf].data, base, wanted);
-        result.push_back(vtkPointSet::SafeDownCast(leaves[i][leaf].data));
-    }
+    for (std::size_t i = 0; i < leaves.size(); ++i) check_class(part, i, leaves[i][leaf].data, base, wanted);
     if (!wanted) return {};
-    if (!result[base])
-        throw Error(named(part, base, std::string("is a ") + class_of(wanted) + ", not a vtkPointSet", base));
+    std::vector<vtkSmartPointer<vtkPointSet>> result;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        vtkDataObject* data = leaves[i][leaf].data;
+        result.push_back(anamorph_vtk::with_explicit_points(data));
+        if (!result.back())
+            throw Error(named(part, base,
+                              std::string("is a ") + class_of(wanted) +
+                                  ", not a point set, image data or a rectilinear grid",
+                              base));
+        if (result.back() != data && have_same_points(result.back(), result.front()))
+            result.back()->SetPoints(result.front()->GetPoints());
+    }
     return result;
 }
 
@@ -626,8 +644,8 @@ std::vector<double> vtkAnamorphInbetween::WeightsOfKeysAt(int inputs, double tim
 // ---- The pipeline ----
 
 /// Throws Error unless all have the topology of the base. What was compared before is not compared again.
-void vtkAnamorphInbetween::CheckTopology(const std::vector<vtkPointSet*>& surfaces, const std::string& part,
-                                         std::set<Pair>& same) const {
+void vtkAnamorphInbetween::CheckTopology(const std::vector<vtkSmartPointer<vtkPointSet>>& surfaces,
+                                         const std::string& part, std::set<Pair>& same) const {
     const auto base_index = static_cast<std::size_t>(this->BaseIndex);
     vtkPointSet* base = surfaces[base_index];
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -641,12 +659,21 @@ void vtkAnamorphInbetween::CheckTopology(const std::vector<vtkPointSet*>& surfac
 }
 
 int vtkAnamorphInbetween::FillInputPortInformation(int, vtkInformation* info) {
-    // The composite comes first: then the pipeline leaves its blocks to this filter.
-    info->Remove(INPUT_REQUIRED_DATA_TYPE());
-    info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-    info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+    anamorph_vtk::require_points(info);
     info->Set(INPUT_IS_REPEATABLE(), 1);
     return 1;
+}
+
+int vtkAnamorphInbetween::RequestDataObject(vtkInformation*, vtkInformationVector** inputs,
+                                            vtkInformationVector* outputs) {
+    const int count = inputs[0]->GetNumberOfInformationObjects();
+    if (count == 0) return 1;
+    const int base = std::clamp(this->BaseIndex, 0, count - 1);
+    return anamorph_vtk::guarded(this, [&] {
+        anamorph_vtk::make_output_of_points(outputs->GetInformationObject(0),
+                                            vtkDataObject::GetData(inputs[0], base),
+                                            ("input " + std::to_string(base)).c_str());
+    });
 }
 
 int vtkAnamorphInbetween::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
@@ -722,8 +749,9 @@ int vtkAnamorphInbetween::RequestData(vtkInformation*, vtkInformationVector** in
         Blend blend({this->WeightsAt(count, time), this->Mode == DELTAS, base, this->Masks,
                      this->Normals == DROP_NORMALS, this->OutputPointsPrecision});
 
-        std::vector<vtkDataObject*> inputs;
-        for (int i = 0; i < count; ++i) inputs.push_back(vtkDataObject::GetData(input_vector[0], i));
+        std::vector<vtkSmartPointer<vtkDataObject>> inputs;
+        for (int i = 0; i < count; ++i)
+            inputs.push_back(anamorph_vtk::without_levels(vtkDataObject::GetData(input_vector[0], i)));
         const LeavesByInput leaves = matching_leaves(inputs, base);
         auto* composite = vtkCompositeDataSet::SafeDownCast(inputs[base]);
         vtkSmartPointer<vtkCompositeDataIterator> at;
@@ -736,7 +764,7 @@ int vtkAnamorphInbetween::RequestData(vtkInformation*, vtkInformationVector** in
         }
         std::set<Pair> same_topology;
         for (std::size_t leaf = 0; leaf < leaves[base].size(); ++leaf) {
-            const std::vector<vtkPointSet*> surfaces = point_sets(leaves, leaf, base);
+            const std::vector<vtkSmartPointer<vtkPointSet>> surfaces = point_sets(leaves, leaf, base);
             if (!surfaces.empty()) {
                 this->CheckTopology(surfaces, part_of(leaves[base][leaf]), same_topology);
                 vtkSmartPointer<vtkPointSet> result = vtkPointSet::SafeDownCast(output);

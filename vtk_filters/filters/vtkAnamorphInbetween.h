@@ -4,9 +4,9 @@
  * @brief   Blends any number of surfaces of the same topology by weights, or by key frames over time.
  *
  * Multiple inbetweening (Oka 1987, section 4.2, eq. 4.3): T = sum_i I_i S_i, point by point. The inputs S_i
- * are the connections of port 0: point sets, or composites of them with the same structure. Counts and
- * connectivity have to agree; an error names the input that differs, and where. Weights I_i outside [0, 1]
- * extrapolate.
+ * are the connections of port 0: point sets, image data and rectilinear grids, which come out as structured
+ * grids (an AMR as blocks of them), or composites of these with the same structure. Counts and connectivity have
+ * to agree; an error names the input that differs, and where. Weights I_i outside [0, 1] extrapolate.
  *
  * What is blended. Points, and the arrays of points and cells that are floating point and that all inputs
  * have under the same name, with as many components. All else, connectivity too, is shared with the base
@@ -36,7 +36,8 @@
 #include <tuple>   // for what was compared
 #include <vector>  // for weights and keys
 
-#include "vtkPointSet.h"  // for what is compared
+#include "vtkPointSet.h"      // for what is compared
+#include "vtkSmartPointer.h"  // for what is compared
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgorithm {
   public:
@@ -140,6 +141,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     ~vtkAnamorphInbetween() override;
 
     int FillInputPortInformation(int port, vtkInformation* info) override;
+    int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -173,7 +175,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     /// The pairs of data sets, with their modification times, whose topology was found to be the same.
     using Pair = std::tuple<vtkDataObject*, vtkMTimeType, vtkDataObject*, vtkMTimeType>;
     std::set<Pair> SameTopology;
-    void CheckTopology(const std::vector<vtkPointSet*>& surfaces, const std::string& part,
+    void CheckTopology(const std::vector<vtkSmartPointer<vtkPointSet>>& surfaces, const std::string& part,
                        std::set<Pair>& same) const;
 };
 

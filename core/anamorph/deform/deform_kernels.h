@@ -19,6 +19,10 @@ inline constexpr double kMostUnits = 0x1p50;
 /// kernel's greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; the exponential function and
 /// products by 8.
 inline constexpr double kKernelError = 16;
+/// The same of a bump with depth or side. Three ways: 2.5 * 0.74 each, and 12 for exponential functions and products; Wendland's
+/// kernel changes by |r F'(r)| = 20 r^2 (1 - r)^3 <= 0.7 where r errs by 4.5, and its polynomial errs by 10. S errs by 3, its
+/// greatest slope, times 9 units of n . V / |V| (its direction errs by 3, of each product one, and two sums), and by 6 of its own.
+inline constexpr double kDeepError = 64;
 
 inline constexpr int kGridBlock = 32;  ///< columns that are culled together; tables are padded to it
 inline constexpr int kGridRows = 2;    ///< rows drawn together; rows of sums are padded to it
@@ -77,18 +81,30 @@ struct PointTerm {
     double vector[3];
     double units[3];  ///< V / resolution
     bool gaussian;
+    bool has_depth = false, has_side = false;
+    double center_w = 0, inverse_extent_w = 0;  ///< where has_depth
+    double direction[3] = {};                   ///< side_direction() where has_side
 };
-/// Adds terms to sums[c][i] of points (u[i], v[i]). count: a multiple of kPointBlock; NaN points get nothing.
-void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+/// Points: their parameters, and where terms have depth or side their depths w, which may be infinite, and unit normals; w is null
+/// where no term has either.
+struct TermPoints {
+    const double *u, *v, *w = nullptr;
+    const double* normal[3] = {};
+};
+/// The derivatives that terms with depth or side have: by u, v, w and the three coordinates of the normal, three components each.
+inline constexpr int kPlainSlopes = 6, kDeepSlopes = 18;
+
+/// Adds terms to sums[c][i] of points. count: a multiple of kPointBlock; NaN points get nothing.
+void deform_points(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                    std::size_t count, std::int64_t* const sums[3]);
-/// Adds V dF/du to slopes[0], slopes[1] and slopes[2], V dF/dv to slopes[3], slopes[4] and slopes[5], term
-/// after term; all instruction sets give the same bits.
-void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
-                      std::size_t count, double* const slopes[6]);
+/// Adds V dF/du to slopes[0], slopes[1] and slopes[2], V dF/dv to slopes[3], slopes[4] and slopes[5], and so on where points have w
+/// (kDeepSlopes), term after term; all instruction sets give the same bits.
+void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
+                      std::size_t count, double* const* slopes);
 /// Does what deform_points() and add_point_slopes() do, with the same bits.
-void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
-                               const double* v, std::size_t count, std::int64_t* const sums[3],
-                               double* const slopes[6]);
+void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count,
+                               const TermPoints& points, std::size_t count, std::int64_t* const sums[3],
+                               double* const* slopes);
 
 /// A deformation over a stretch of one row of a grid, with the derivatives of its factors (axis_factors).
 struct RowTerm {
@@ -101,16 +117,17 @@ struct RowTerm {
 void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const slopes[6]);
 
 /// Unit normals: normals[c][i], of any length, become those of the surface that is displaced with the
-/// derivatives slopes[0..2][i] by u and slopes[3..5][i] by v (turned_normal). gradients: of u and of v. What
-/// has no direction becomes 0. count: a multiple of kPointBlock.
-void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
-                  double* const normals[3]);
+/// derivatives slopes[0..2][i] by u and slopes[3..5][i] by v, and by w if `by_depth` (turned_normal). gradients: of
+/// u, v and w. What has no direction becomes 0. count: a multiple of kPointBlock.
+void turn_normals(const double* const* slopes, bool by_depth, const double (&gradients)[3][3],
+                  std::size_t count, double* const normals[3]);
 
-/// Corners of cells of a surface, displaced: an edge e becomes e + D_u du + D_v dv.
+/// Corners of cells of a surface, displaced: an edge e becomes e + D_u du + D_v dv, and so on for each parameter.
 struct CornerEdges {
-    const double* by[6];                        ///< D_u and D_v at the corner
+    int parameters;                             ///< 2, or 6 with the depth and the normal
+    const double* by[kDeepSlopes];              ///< D_u and D_v (and so on) at the corner
     const double *next[3], *previous[3];        ///< the edges to the neighbours
-    const double *next_by[2], *previous_by[2];  ///< their changes of u and v
+    const double *next_by[6], *previous_by[6];  ///< their changes of the parameters
     const double* turns;  ///< 0, or 2 pi for corners that go inwards: it is taken from the angle
 };
 /// out[c][i] = the normal of a corner times its angle (corner_normal), in whole multiples of `unit`; 0 where

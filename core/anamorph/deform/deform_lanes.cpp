@@ -322,7 +322,7 @@ struct AtPoints {
 
 /// Adds V dF/du and V dF/dv of a term with these factors.
 HWY_INLINE void AddSlopes(const Slope& across, const Slope& down, bool gaussian, const double (&vector)[3],
-                          L (&sum)[6]) {
+                          L* sum) {
     L by_u, by_v;
     if (gaussian) {
         by_u = across.by * down.value;
@@ -358,25 +358,84 @@ HWY_INLINE const L& ValueOf(const Slope& a) {
     return a.value;
 }
 
-/// Adds terms at points to displacements, to slopes, or to both.
+/// Adds V dF/dx of a term with depth or side; x: u, v, w and the normal's coordinates. f: F by three ways; share: S and its slope.
+HWY_INLINE void AddDeepSlopes(const PointTerm& term, const Slope (&ways)[3], const Slope& share,
+                              L (&sum)[kDeepSlopes]) {
+    const auto& [across, down, deep] = ways;
+    L by[6], value;
+    if (term.gaussian) {
+        value = across.value * down.value * deep.value;
+        by[0] = across.by * down.value * deep.value;
+        by[1] = across.value * down.by * deep.value;
+        by[2] = across.value * down.value * deep.by;
+    } else {
+        const Slope f = wendland_of(Slope(across.value + down.value + deep.value, L(1.0)));
+        value = f.value;
+        for (int k = 0; k < 3; ++k) by[k] = f.by * ways[k].by;
+    }
+    for (int k = 0; k < 3; ++k) by[k] = by[k] * share.value;
+    for (int k = 0; k < 3; ++k) by[3 + k] = value * share.by * L(term.direction[k]);
+    for (int k = 0; k < 6; ++k)
+        for (int c = 0; c < 3; ++c) sum[3 * k + c] = sum[3 * k + c] + L(term.vector[c]) * by[k];
+}
+
+/// Adds a term with depth or side at the points of a vector. True if it reaches any.
 template <bool kSums, bool kSlopes>
-HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_count, const double* u,
-                            const double* v, std::size_t count, std::int64_t* const* sums,
-                            double* const* slopes) {
+HWY_INLINE bool AddDeepTerm(const PointTerm& term, const TermPoints& points, std::size_t i, VI (&sum)[3],
+                            L (&slope)[kDeepSlopes]) {
+    const AtPoints at(term, L::load(points.u + i), L::load(points.v + i));
+    const AxisKernel depth{term.center_w, term.inverse_extent_w, term.reach, term.gaussian};
+    L::M inside = at.inside;
+    L z(0.0);
+    if (term.has_depth) {
+        z = DistanceOf(depth, L::load(points.w + i));
+        inside = both(inside, L::M{hn::Le(abs(z).v, hn::Set(D(), term.reach))});
+    }
+    if (hn::AllFalse(D(), inside.m)) return false;
+    Slope share(1.0);
+    if (term.has_side) {
+        L facing(0.0);
+        for (int c = 0; c < 3; ++c) facing = facing + L::load(points.normal[c] + i) * L(term.direction[c]);
+        share = side_share(Slope(facing, L(1.0)));
+    }
+    // What is not inside gets nothing, neither a displacement nor a slope.
+    share = ZeroUnless(inside, share);
+    const Slope ways[3] = {FactorOf<Slope>(at.across, at.x), FactorOf<Slope>(at.down, at.y),
+                           term.has_depth ? FactorOf<Slope>(depth, z) : Slope(term.gaussian ? 1.0 : 0.0)};
+    if constexpr (kSums) {
+        const L f = term.gaussian ? ways[0].value * ways[1].value * ways[2].value
+                                  : wendland_of(ways[0].value + ways[1].value + ways[2].value);
+        const L whole = ZeroUnless(inside, f * share.value);
+        for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], hn::Set(D(), term.units[c]), whole.v);
+    }
+    if constexpr (kSlopes) AddDeepSlopes(term, ways, share, slope);
+    return true;
+}
+
+/// Adds terms at points to displacements, to slopes, or to both. kDeep: points have depths and normals.
+template <bool kSums, bool kSlopes, bool kDeep>
+HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
+                            std::size_t count, std::int64_t* const* sums, double* const* slopes) {
     using Factor = std::conditional_t<kSlopes, Slope, L>;
+    constexpr int kSlopeCount = kDeep ? kDeepSlopes : kPlainSlopes;
     const D d;
     const DI di;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
-        const L pu = L::load(u + i), pv = L::load(v + i);
+        const L pu = L::load(points.u + i), pv = L::load(points.v + i);
         VI sum[3];
-        L slope[6];
+        L slope[kSlopeCount];
         if constexpr (kSums)
             for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
         if constexpr (kSlopes)
-            for (int c = 0; c < 6; ++c) slope[c] = L::load(slopes[c] + i);
+            for (int c = 0; c < kSlopeCount; ++c) slope[c] = L::load(slopes[c] + i);
         std::size_t added = 0;
         for (std::size_t k = 0; k < term_count; ++k) {
             const PointTerm& term = *terms[k];
+            if constexpr (kDeep)
+                if (term.has_depth || term.has_side) {
+                    if (AddDeepTerm<kSums, kSlopes>(term, points, i, sum, slope)) ++added;
+                    continue;
+                }
             const AtPoints at(term, pu, pv);
             if (hn::AllFalse(d, at.inside.m)) continue;
             Factor across = FactorOf<Factor>(at.across, at.x);
@@ -396,21 +455,28 @@ HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_coun
         if constexpr (kSums)
             for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
         if constexpr (kSlopes)
-            for (int c = 0; c < 6; ++c) slope[c].store(slopes[c] + i);
+            for (int c = 0; c < kSlopeCount; ++c) slope[c].store(slopes[c] + i);
     }
 }
-void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+template <bool kSums, bool kSlopes>
+void AddTerms(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
+              std::size_t count, std::int64_t* const* sums, double* const* slopes) {
+    if (points.w)
+        AddAtPoints<kSums, kSlopes, true>(terms, term_count, points, count, sums, slopes);
+    else
+        AddAtPoints<kSums, kSlopes, false>(terms, term_count, points, count, sums, slopes);
+}
+void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                   std::size_t count, std::int64_t* const* sums) {
-    AddAtPoints<true, false>(terms, term_count, u, v, count, sums, nullptr);
+    AddTerms<true, false>(terms, term_count, points, count, sums, nullptr);
 }
-void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                     std::size_t count, double* const* slopes) {
-    AddAtPoints<false, true>(terms, term_count, u, v, count, nullptr, slopes);
+    AddTerms<false, true>(terms, term_count, points, count, nullptr, slopes);
 }
-void DeformPointsWithSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
-                            const double* v, std::size_t count, std::int64_t* const* sums,
-                            double* const* slopes) {
-    AddAtPoints<true, true>(terms, term_count, u, v, count, sums, slopes);
+void DeformPointsWithSlopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
+                            std::size_t count, std::int64_t* const* sums, double* const* slopes) {
+    AddTerms<true, true>(terms, term_count, points, count, sums, slopes);
 }
 
 /// The vector of length 1 in the same direction; 0 where the length is 0 or not finite.
@@ -421,18 +487,24 @@ HWY_INLINE Triple<L> UnitOf(const Triple<L>& a) {
             ZeroUnless(good, a.z * inverse)};
 }
 
-void TurnNormals(const double* const* slopes, const double (&gradients)[2][3], std::size_t count,
-                 double* const* normals) {
+void TurnNormals(const double* const* slopes, bool by_depth, const double (&gradients)[3][3],
+                 std::size_t count, double* const* normals) {
     const auto gradient = [&](int i) HWY_ATTR {
         return Triple<L>{gradients[i][0], gradients[i][1], gradients[i][2]};
     };
-    const Triple<L> g = gradient(0), h = gradient(1), gh = cross_product(g, h);
+    const Triple<L> g = gradient(0), h = gradient(1), k = gradient(2), gh = cross_product(g, h);
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
         const auto loaded = [i](const double* const* from) HWY_ATTR {
             return Triple<L>{L::load(from[0] + i), L::load(from[1] + i), L::load(from[2] + i)};
         };
         const Triple<L> n = UnitOf(loaded(normals));
-        const Triple<L> turned = UnitOf(turned_normal(n, loaded(slopes), loaded(slopes + 3), g, h, gh));
+        Triple<L> longer = turned_normal(n, loaded(slopes), loaded(slopes + 3), g, h, gh);
+        if (by_depth) {
+            const Triple<L> more =
+                turned_further(n, loaded(slopes), loaded(slopes + 3), loaded(slopes + 6), g, h, k);
+            longer = {longer.x + more.x, longer.y + more.y, longer.z + more.z};
+        }
+        const Triple<L> turned = UnitOf(longer);
         turned.x.store(normals[0] + i);
         turned.y.store(normals[1] + i);
         turned.z.store(normals[2] + i);
@@ -442,11 +514,12 @@ void TurnNormals(const double* const* slopes, const double (&gradients)[2][3], s
 void CornerNormals(const CornerEdges& corners, double unit, std::size_t count, double* const* out) {
     const L inverse(1 / unit);
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
-        const auto edge = [&](const double* const(&undeformed)[3], const double* const(&by)[2]) HWY_ATTR {
-            const L du = L::load(by[0] + i), dv = L::load(by[1] + i);
+        const auto edge = [&](const double* const(&undeformed)[3], const double* const(&by)[6]) HWY_ATTR {
             const auto moved = [&](int c) HWY_ATTR {
-                return L::load(undeformed[c] + i) + du * L::load(corners.by[c] + i) +
-                       dv * L::load(corners.by[3 + c] + i);
+                L sum = L::load(undeformed[c] + i);
+                for (int k = 0; k < corners.parameters; ++k)
+                    sum = sum + L::load(by[k] + i) * L::load(corners.by[3 * k + c] + i);
+                return sum;
             };
             return UnitOf({moved(0), moved(1), moved(2)});
         };
@@ -568,13 +641,13 @@ void axis_factors(const AxisKernel& kernel, const double* x, int count, double* 
 void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const sums[6]) {
     HWY_DYNAMIC_DISPATCH(AddRowSlopes)(terms, term_count, count, sums);
 }
-void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
-                      std::size_t count, double* const sums[6]) {
-    HWY_DYNAMIC_DISPATCH(AddPointSlopes)(terms, term_count, u, v, count, sums);
+void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
+                      std::size_t count, double* const* slopes) {
+    HWY_DYNAMIC_DISPATCH(AddPointSlopes)(terms, term_count, points, count, slopes);
 }
-void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
-                  double* const normals[3]) {
-    HWY_DYNAMIC_DISPATCH(TurnNormals)(slopes, gradients, count, normals);
+void turn_normals(const double* const* slopes, bool by_depth, const double (&gradients)[3][3],
+                  std::size_t count, double* const normals[3]) {
+    HWY_DYNAMIC_DISPATCH(TurnNormals)(slopes, by_depth, gradients, count, normals);
 }
 void corner_normals(const CornerEdges& corners, double unit, std::size_t count, double* const out[3]) {
     HWY_DYNAMIC_DISPATCH(CornerNormals)(corners, unit, count, out);
@@ -585,14 +658,14 @@ void deform_band(const GridBand<float>& band) {
 void deform_band(const GridBand<double>& band) {
     HWY_DYNAMIC_DISPATCH(DeformBandDouble)(band);
 }
-void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+void deform_points(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                    std::size_t count, std::int64_t* const sums[3]) {
-    HWY_DYNAMIC_DISPATCH(DeformPoints)(terms, term_count, u, v, count, sums);
+    HWY_DYNAMIC_DISPATCH(DeformPoints)(terms, term_count, points, count, sums);
 }
-void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
-                               const double* v, std::size_t count, std::int64_t* const sums[3],
-                               double* const slopes[6]) {
-    HWY_DYNAMIC_DISPATCH(DeformPointsWithSlopes)(terms, term_count, u, v, count, sums, slopes);
+void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count,
+                               const TermPoints& points, std::size_t count, std::int64_t* const sums[3],
+                               double* const* slopes) {
+    HWY_DYNAMIC_DISPATCH(DeformPointsWithSlopes)(terms, term_count, points, count, sums, slopes);
 }
 void blend(const float* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
            float* out) {

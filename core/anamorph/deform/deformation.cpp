@@ -22,7 +22,7 @@ std::optional<Deformation> effect(const Deformation& d) {
 
 auto key(const Deformation& d) {
     return std::tuple(d.center.x, d.center.y, d.extent.x, d.extent.y, d.vector.x, d.vector.y, d.vector.z,
-                      d.kernel);
+                      d.kernel, d.center_w, d.extent_w, d.side);
 }
 
 /// What moves the surface, sorted.
@@ -40,8 +40,20 @@ std::vector<Deformation> effects(const std::vector<Deformation>& list) {
 void check_deformation(const Deformation& d) {
     for (const double v : {d.vector.x, d.vector.y, d.vector.z}) check_finite("vector", v);
     for (const double c : {d.center.x, d.center.y}) check_finite("center", c);
+    check_finite("center", d.center_w);
     kExtentRow.check(d.extent.x);
     kExtentRow.check(d.extent.y);
+    if (d.has_depth()) kExtentRow.check(d.extent_w);
+}
+
+bool needs_depth(const std::vector<Deformation>& list) {
+    return std::any_of(list.begin(), list.end(),
+                       [](const Deformation& d) { return effect(d) && !d.is_plain(); });
+}
+
+bool needs_normals(const std::vector<Deformation>& list) {
+    return std::any_of(list.begin(), list.end(),
+                       [](const Deformation& d) { return effect(d) && d.has_side(); });
 }
 
 void add_displacement(const Deformation& d, glm::dvec2 p, DisplacementJet& sum) {
@@ -56,6 +68,15 @@ DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2
     DisplacementJet sum;
     for (const Deformation& d : list)
         if (d.enabled) add_displacement(d, p, sum);
+    return sum;
+}
+
+glm::dvec3 displacement_at(const std::vector<Deformation>& list, glm::dvec2 p, double w, glm::dvec3 n) {
+    glm::dvec3 sum(0.0);
+    for (const Deformation& d : list)
+        if (d.enabled)
+            sum +=
+                d.vector * influence(d, p.x, p.y, w, dot_product(side_direction<double>(d), {n.x, n.y, n.z}));
     return sum;
 }
 

@@ -6,8 +6,20 @@
 // moves the point P of a surface that belongs to the point p = (u, v) of the texture plane. c and a are in
 // the units of u and v, V in those of P. The list is plain data: what evaluates it (deformed_surface.h) adds
 // in fixed point, so the surface depends neither on the order of the list nor on how it came about.
+//
+// p, c and a may have a third coordinate, the depth w of the undeformed point, in the units of P: with
+//     r^2 = ((u - c_u) / a_u)^2 + ((v - c_v) / a_v)^2 + ((w - c_w) / a_w)^2
+// a bump reaches as far in depth as along the plane, and moves one of two parts of a surface that lie over each
+// other. Without a_w the third term is missing: a bump reaches to any depth.
+//
+// A bump may move one side alone. With the unit normal n of the undeformed surface, V F S moves the point, where
+//     S = H(2 n . V / |V|) of the front, H(-2 n . V / |V|) of the back,
+//     H(t) = 0 up to t = 0, t^2 (3 - 2 t) up to t = 1, then 1:
+// normals within 60 degrees of V (or of -V) move in full, those that are 90 degrees off or more do not, and S is once
+// continuously differentiable, and twice but on curves. A point without a normal (n = 0) belongs to neither side.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/vec2.hpp>
@@ -29,6 +41,9 @@ enum class DeformationKernel {
                  ///< 1995, phi_(3,1))
 };
 
+/// What a bump moves: all of a surface, or where its normal looks along V, or against V.
+enum class DeformationSide { both, front, back };
+
 /// One bump: V F(p, c, a) of eq. (4.1).
 struct Deformation {
     glm::dvec3 vector{0.0};                  ///< V
@@ -36,11 +51,24 @@ struct Deformation {
     glm::dvec2 extent{kExtentRow.standard};  ///< a: r is 1 on the ellipse with these half axes
     DeformationKernel kernel = DeformationKernel::gaussian;
     bool enabled = true;
+    double center_w = 0;  ///< c_w
+    double extent_w = 0;  ///< a_w; 0: none
+    DeformationSide side = DeformationSide::both;
 
+    bool has_depth() const { return extent_w != 0; }
+    bool has_side() const { return side != DeformationSide::both; }
+    /// Does the bump need no more of a point than (u, v)?
+    bool is_plain() const { return !has_depth() && !has_side(); }
     bool operator==(const Deformation&) const = default;
 };
 
-/// Checks a bump. Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow.
+/// Does any bump of a list that moves anything need more of a point than (u, v)?
+bool needs_depth(const std::vector<Deformation>& list);
+/// Is any bump of a list that moves anything of one side?
+bool needs_normals(const std::vector<Deformation>& list);
+
+/// Checks a bump. Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow;
+/// extent_w may be 0.
 void check_deformation(const Deformation& deformation);
 
 /// exp(-a) for a >= 0. Numbers that have a faster way overload it.
@@ -50,6 +78,21 @@ T exp_of_minus(const T& a) {
 }
 
 #include "anamorph/deform/deformation_formula.h"
+
+/// V / |V| of the front, -V / |V| of the back, (0, 0, 0) of V = 0: what a normal is multiplied by (facing).
+template <class T>
+Triple<T> side_direction(const Deformation& d) {
+    const double largest =
+        std::max(std::fabs(d.vector.x), std::max(std::fabs(d.vector.y), std::fabs(d.vector.z)));
+    if (!(largest > 0)) return {T(0.0), T(0.0), T(0.0)};
+    // In units of a power of 2, so that no product leaves the range of double.
+    const auto scaled = [exponent = std::ilogb(largest), back = d.side == DeformationSide::back](double x) {
+        return T(std::ldexp(back ? -x : x, -exponent));
+    };
+    const Triple<T> v{scaled(d.vector.x), scaled(d.vector.y), scaled(d.vector.z)};
+    const T length = sqrt(dot_product(v, v));
+    return {v.x / length, v.y / length, v.z / length};
+}
 
 /// F at x = (u - c_u) / a_u and y = (v - c_v) / a_v; it is 1 at the centre.
 template <class T>
@@ -65,12 +108,25 @@ T influence(const Deformation& d, const T& u, const T& v) {
                         (v - T(d.center.y)) * T(1 / d.extent.y));
 }
 
-/// The displacement sum_i V_i F(p, c_i, a_i) of the enabled deformations at p and its derivatives by u and v.
+/// F(p, c, a) S at p = (u, v, w), exactly. facing: the product of the unit normal and side_direction(d).
+template <class T>
+T influence(const Deformation& d, const T& u, const T& v, const T& w, const T& facing) {
+    const T x = (u - T(d.center.x)) * T(1 / d.extent.x), y = (v - T(d.center.y)) * T(1 / d.extent.y);
+    T squared = square(x) + square(y);
+    if (d.has_depth()) squared = squared + square(T((w - T(d.center_w)) * T(1 / d.extent_w)));
+    const T f = d.kernel == DeformationKernel::gaussian ? gaussian_of(squared) : wendland_of(squared);
+    return d.has_side() ? T(f * side_share(facing)) : f;
+}
+
+/// The displacement sum_i V_i F(p, c_i, a_i) of the enabled deformations at p and its derivatives by u and v. The
+/// functions that give it read bumps as they are at any depth and on both sides; callers refuse others.
 struct DisplacementJet {
     glm::dvec3 value{0.0}, by_u{0.0}, by_v{0.0};
 };
 /// Finds the displacement and its derivatives at p in double, with no cutoff; deformations that are not enabled add nothing.
 DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p);
+/// The displacement at p of a surface whose point there has the depth w and the unit normal n.
+glm::dvec3 displacement_at(const std::vector<Deformation>& list, glm::dvec2 p, double w, glm::dvec3 n);
 /// Adds the displacement at p of one deformation, enabled or not, and its derivatives to `sum`.
 void add_displacement(const Deformation& deformation, glm::dvec2 p, DisplacementJet& sum);
 

@@ -17,6 +17,7 @@ using text_file::in_entry;
 using text_file::Json;
 
 constexpr char kColumns[] = "center_u,center_v,extent_u,extent_v,x,y,z,kernel,enabled";
+constexpr char kDepthColumns[] = ",center_w,extent_w,side";
 
 void check_count(const std::vector<Deformation>& list, std::string_view name, const std::string& label) {
     if (list.size() > kMaxDeformations)
@@ -25,25 +26,30 @@ void check_count(const std::vector<Deformation>& list, std::string_view name, co
 
 // --- JSON
 
-/// Copies the numbers of entry[key].
+/// Copies the numbers of entry[key], and one more to `further` unless null, which is optional.
 template <class Vector>
-void read_numbers(const Json& entry, const char* key, Vector& to) {
+void read_numbers(const Json& entry, const char* key, Vector& to, double* further = nullptr) {
     constexpr auto size = static_cast<std::size_t>(Vector::length());
-    const auto is_such = [](const Json& v) { return v.is_array() && v.size() == size && v.all_numbers(); };
+    const auto is_such = [&](const Json& v) {
+        return v.is_array() && (v.size() == size || (further && v.size() == size + 1)) && v.all_numbers();
+    };
     if (!entry.contains(key) || !is_such(entry.member(key)))
-        throw Error(std::string(key) + ": must be a list of " + std::to_string(size) + " numbers");
+        throw Error(std::string(key) + ": must be a list of " + std::to_string(size) +
+                    (further ? " or " + std::to_string(size + 1) : "") + " numbers");
     for (std::size_t i = 0; i < size; ++i) to[static_cast<int>(i)] = entry.member(key)[i].number();
+    if (entry.member(key).size() > size) *further = entry.member(key)[size].number();
 }
 
 Deformation read_deformation(const Json& entry) {
     if (!entry.is_object()) throw Error("must be an object with vector, center and extent");
     for (const auto& [key, value] : entry.members())
-        if (key != "vector" && key != "center" && key != "extent" && key != "kernel" && key != "enabled")
-            throw Error(excerpt(key) + ": must be one of vector, center, extent, kernel, enabled");
+        if (key != "vector" && key != "center" && key != "extent" && key != "kernel" && key != "enabled" &&
+            key != "side")
+            throw Error(excerpt(key) + ": must be one of vector, center, extent, kernel, enabled, side");
     Deformation d;
     read_numbers(entry, "vector", d.vector);
-    read_numbers(entry, "center", d.center);
-    read_numbers(entry, "extent", d.extent);
+    read_numbers(entry, "center", d.center, &d.center_w);
+    read_numbers(entry, "extent", d.extent, &d.extent_w);
     if (entry.contains("kernel")) {
         if (!entry.member("kernel").is_string()) throw Error("kernel: must be a name in quotes");
         d.kernel = kernel_named(entry.member("kernel").string());
@@ -51,6 +57,10 @@ Deformation read_deformation(const Json& entry) {
     if (entry.contains("enabled")) {
         if (!entry.member("enabled").is_boolean()) throw Error("enabled: must be true or false");
         d.enabled = entry.member("enabled").boolean();
+    }
+    if (entry.contains("side")) {
+        if (!entry.member("side").is_string()) throw Error("side: must be a name in quotes");
+        d.side = side_named(entry.member("side").string());
     }
     check_deformation(d);
     return d;
@@ -60,8 +70,9 @@ Deformation read_deformation(const Json& entry) {
 
 Deformation read_row(std::string_view row) {
     const std::vector<std::string_view> fields = text_file::fields_of(row);
-    if (fields.size() < 7 || fields.size() > 9)
-        throw Error("must be " + std::string(kColumns) + " (the last two if wanted), not " +
+    if (fields.size() < 7 || fields.size() > 12 || fields.size() == 10)
+        throw Error("must be " + std::string(kColumns) + kDepthColumns +
+                    " (the first seven, and of the others those that are wanted), not " +
                     std::to_string(fields.size()) + " fields");
     Deformation d;
     double* const numbers[7] = {&d.center.x, &d.center.y, &d.extent.x, &d.extent.y,
@@ -73,6 +84,11 @@ Deformation read_row(std::string_view row) {
             throw Error("enabled", excerpt(fields[8]), "must be 0 or 1");
         d.enabled = fields[8] == "1";
     }
+    if (fields.size() > 9) {
+        d.center_w = text_file::number(fields[9]);
+        d.extent_w = text_file::number(fields[10]);
+    }
+    if (fields.size() > 11) d.side = side_named(fields[11]);
     check_deformation(d);
     return d;
 }
@@ -87,6 +103,11 @@ std::string joined(std::initializer_list<double> numbers, const char* separator)
     return text;
 }
 
+/// Are there numbers of depth to be written, used or not?
+bool has_numbers_of_depth(const Deformation& d) {
+    return d.has_depth() || d.center_w != 0 || std::signbit(d.center_w);
+}
+
 }  // namespace
 
 const char* name_of(DeformationKernel kernel) {
@@ -97,6 +118,16 @@ DeformationKernel kernel_named(std::string_view name) {
     for (const DeformationKernel kernel : {DeformationKernel::gaussian, DeformationKernel::wendland_c2})
         if (name == name_of(kernel)) return kernel;
     throw Error("kernel", excerpt(name), "must be gaussian or wendland_c2");
+}
+
+const char* name_of(DeformationSide side) {
+    return side == DeformationSide::both ? "both" : side == DeformationSide::front ? "front" : "back";
+}
+
+DeformationSide side_named(std::string_view name) {
+    for (const DeformationSide side : {DeformationSide::both, DeformationSide::front, DeformationSide::back})
+        if (name == name_of(side)) return side;
+    throw Error("side", excerpt(name), "must be both, front or back");
 }
 
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name) {
@@ -138,22 +169,29 @@ std::string deformations_json(const std::vector<Deformation>& list) {
     std::string text = "{\"deformations\": [";
     const char* separator = "\n";
     for (const Deformation& d : list) {
+        const bool deep = has_numbers_of_depth(d);
         text += std::string(separator) + "  {\"vector\": [" +
                 joined({d.vector.x, d.vector.y, d.vector.z}, ", ") + "], \"center\": [" +
-                joined({d.center.x, d.center.y}, ", ") + "], \"extent\": [" +
-                joined({d.extent.x, d.extent.y}, ", ") + "], \"kernel\": \"" + name_of(d.kernel) +
-                "\", \"enabled\": " + (d.enabled ? "true" : "false") + "}";
+                joined({d.center.x, d.center.y}, ", ") + (deep ? ", " + joined({d.center_w}, "") : "") +
+                "], \"extent\": [" + joined({d.extent.x, d.extent.y}, ", ") +
+                (deep ? ", " + joined({d.extent_w}, "") : "") + "], \"kernel\": \"" + name_of(d.kernel) +
+                "\", \"enabled\": " + (d.enabled ? "true" : "false") +
+                (d.has_side() ? std::string(", \"side\": \"") + name_of(d.side) + "\"" : "") + "}";
         separator = ",\n";
     }
     return text + "\n]}\n";
 }
 
 std::string deformations_csv(const std::vector<Deformation>& list) {
-    std::string text = kColumns + std::string("\n");
+    const bool deep = std::any_of(list.begin(), list.end(), [](const Deformation& d) {
+        return has_numbers_of_depth(d) || d.has_side();
+    });
+    std::string text = kColumns + std::string(deep ? kDepthColumns : "") + "\n";
     for (const Deformation& d : list)
         text += joined({d.center.x, d.center.y, d.extent.x, d.extent.y, d.vector.x, d.vector.y, d.vector.z},
                        ",") +
-                "," + name_of(d.kernel) + (d.enabled ? ",1\n" : ",0\n");
+                "," + name_of(d.kernel) + (d.enabled ? ",1" : ",0") +
+                (deep ? "," + joined({d.center_w, d.extent_w}, ",") + "," + name_of(d.side) : "") + "\n";
     return text;
 }
 

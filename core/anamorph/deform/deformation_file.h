@@ -7,10 +7,13 @@
 //     {"deformations": [
 //         {"vector": [x, y, z], "center": [u, v], "extent": [a_u, a_v],
 //          "kernel": "gaussian",      optional: gaussian (the default) or wendland_c2
-//          "enabled": true}]}         optional: true (the default) or false
+//          "enabled": true,           optional: true (the default) or false
+//          "side": "both"}]}          optional: both (the default), front or back
+//
+// center and extent may have a third number, the depth w: a bump whose extent has none, or 0, reaches to any depth.
 //
 // CSV: one deformation a line, center_u,center_v,extent_u,extent_v,x,y,z and then, if wanted, kernel and
-// enabled (1 or 0). Empty lines and lines that start with # are passed over, and so is a first line that
+// enabled (1 or 0), and then center_w,extent_w and side. Empty lines and lines that start with # are passed over, and so is a first line that
 // names the columns (it starts with center_u).
 #pragma once
 
@@ -37,6 +40,11 @@ std::vector<Deformation> parse_deformations_file(std::string_view text, std::str
 std::string deformations_json(const std::vector<Deformation>& list);
 /// The text of a CSV file that reads back as the same list, to the bit.
 std::string deformations_csv(const std::vector<Deformation>& list);
+
+/// The name of a side in files: "both", "front" or "back".
+const char* name_of(DeformationSide side);
+/// The side of that name. Throws Error on other names.
+DeformationSide side_named(std::string_view name);
 
 /// The name of a kernel in files: "gaussian" or "wendland_c2".
 const char* name_of(DeformationKernel kernel);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <numeric>
 
 namespace anamorph {
@@ -23,7 +24,7 @@ double squared_reach(const Deformation& d) {
 DeformationReach::DeformationReach(const std::vector<Deformation>& list) : m_order(list.size()) {
     for (const Deformation& d : list) {
         m_boxes.push_back(reached_by(d));
-        if (d.kernel == DeformationKernel::gaussian)
+        if (d.kernel == DeformationKernel::gaussian && d.is_plain())
             m_far += glm::abs(d.vector) * ((2 * squared_reach(d) + 1) * kFar);
     }
     std::iota(m_order.begin(), m_order.end(), 0u);
@@ -31,6 +32,8 @@ DeformationReach::DeformationReach(const std::vector<Deformation>& list) : m_ord
 }
 
 DeformationReach::Reached DeformationReach::reached_by(const Deformation& d) {
+    constexpr double kMost = std::numeric_limits<double>::max();
+    if (d.kernel == DeformationKernel::gaussian && !d.is_plain()) return {-kMost, -kMost, kMost, kMost};
     // A little more, for what is rounded here.
     const double reach =
         1.001 * (d.kernel == DeformationKernel::gaussian ? std::sqrt(squared_reach(d)) : 1.0);

@@ -6,6 +6,9 @@
 // Taylor coefficients up to the second degree are at most
 //     (2 R^2 + 1) e^-64 m^2 / m^2 = (2 R^2 + 1) e^-64                                                              (F)
 // since those are at most (2 r^2 + 1) / m^2 times e^(-r^2).
+//
+// With depth or side, F is never larger, but its derivatives also have those of depth and normal, of which nothing is known here:
+// such a Gaussian reaches everything, while Wendland's kernel still is 0 beyond r = 1 of u and v alone.
 #pragma once
 
 #include <cstdint>

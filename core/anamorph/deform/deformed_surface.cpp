@@ -2,6 +2,7 @@
 #include "anamorph/deform/deformed_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -209,6 +210,7 @@ void DisplacementSum::add(Totals& totals, const Deformation& d, int sign) const 
                             shortest(kMostTotal * m_options.resolution));
         totals.units[c] += whole;
         if (d.kernel == DeformationKernel::gaussian) totals.gaussian[c] += whole;
+        if (!d.is_plain()) totals.deep[c] += whole;
     }
     totals.count += sign;
 }
@@ -228,16 +230,34 @@ double DisplacementSum::error_bound() const {
     double most = 0;
     for (int c = 0; c < 3; ++c)
         most = std::max(most, static_cast<double>(m_totals.gaussian[c]) * m_options.cutoff +
-                                  static_cast<double>(m_totals.units[c]) * simd::kKernelError * 0x1p-53);
+                                  static_cast<double>(m_totals.units[c]) * simd::kKernelError * 0x1p-53 +
+                                  static_cast<double>(m_totals.deep[c]) * simd::kDeepError * 0x1p-53);
     return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
 }
 
 double DisplacementSum::most() const {
     double most = 0;
-    for (const std::int64_t units : m_totals.units)
-        most = std::max(most, static_cast<double>(units) * (1 + 2 * simd::kKernelError * 0x1p-53));
+    for (int c = 0; c < 3; ++c)
+        most =
+            std::max(most, static_cast<double>(m_totals.units[c]) * (1 + 2 * simd::kKernelError * 0x1p-53) +
+                               static_cast<double>(m_totals.deep[c]) * (2 * simd::kDeepError * 0x1p-53));
     return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
 }
+
+namespace {
+
+/// Throws Error on bumps that need more of a point than (u, v).
+void check_plain(std::span<const DeformationChange> changes, const char* what) {
+    for (const DeformationChange& change : changes)
+        for (const auto& end : {change.before, change.after})
+            if (end && !end->is_plain())
+                throw Error(end->has_depth() ? "extent" : "side",
+                            end->has_depth() ? shortest(end->extent_w) : "front or back",
+                            std::string("there are no depths and normals ") + what +
+                                ": must be without a third number, and of both sides");
+}
+
+}  // namespace
 
 // --- Grids
 
@@ -247,6 +267,7 @@ DeformedGrid::DeformedGrid(std::vector<double> u, std::vector<double> v, const D
 }
 
 void DeformedGrid::apply(std::span<const DeformationChange> changes) {
+    check_plain(changes, "on a grid of (u, v)");
     m_sum.apply(changes);
     m_pending.insert(m_pending.end(), changes.begin(), changes.end());
 }
@@ -431,6 +452,7 @@ double deform_grid(const std::vector<Deformation>& list, std::span<const double>
                    const DeformOptions& options, const T* base, T* out, const ParallelFor& parallel_for) {
     check_grid(u, v);
     const std::vector<DeformationChange> changes = difference({}, list);
+    check_plain(changes, "on a grid of (u, v)");
     DisplacementSum sum(options);
     sum.apply(changes);
     const std::vector<Term> terms = terms_of(changes);
@@ -480,6 +502,14 @@ simd::PointTerm point_term(const Term& from, const DisplacementSum& sum) {
                          d.kernel == DeformationKernel::gaussian};
     set_units(from, 1, term.vector);
     set_units(from, sum.options().resolution, term.units);
+    term.has_depth = d.has_depth();
+    term.has_side = d.has_side();
+    if (term.has_depth) {
+        term.center_w = d.center_w;
+        term.inverse_extent_w = 1 / d.extent_w;
+    }
+    const Triple<double> direction = side_direction<double>(d);
+    if (term.has_side) std::ranges::copy(std::array{direction.x, direction.y, direction.z}, term.direction);
     return term;
 }
 std::vector<simd::PointTerm> point_terms(std::span<const DeformationChange> changes,
@@ -496,12 +526,15 @@ bool reaches(const simd::PointTerm& term, int axis, double least, double most) {
            (least - term.center[axis]) * term.inverse_extent[axis] <= term.reach;
 }
 
-/// The derivatives at `count` points, a multiple of simd::kPointBlock.
-void point_slopes(const std::vector<const simd::PointTerm*>& near, const double* u, const double* v,
-                  std::size_t count, double (&by)[6][SurfaceSlopes::kMost]) {
-    double* sums[6];
-    for (int c = 0; c < 6; ++c) std::fill_n(sums[c] = by[c], count, 0.0);
-    simd::add_point_slopes(near.data(), near.size(), u, v, count, sums);
+/// The derivatives at `count` points, a multiple of simd::kPointBlock, and how many parameters they are by.
+template <int kSlopes>
+int point_slopes(const std::vector<const simd::PointTerm*>& near, const simd::TermPoints& points,
+                 std::size_t count, double (&by)[kSlopes][SurfaceSlopes::kMost]) {
+    const int parameters = points.w ? 6 : 2;
+    double* sums[kSlopes];
+    for (int c = 0; c < 3 * parameters; ++c) std::fill_n(sums[c] = by[c], count, 0.0);
+    simd::add_point_slopes(near.data(), near.size(), points, count, sums);
+    return parameters;
 }
 
 }  // namespace
@@ -553,7 +586,45 @@ DeformedPoints::DeformedPoints(std::span<const glm::dvec2> points, const DeformO
         cell.end += (simd::kPointBlock - (cell.end - cell.begin) % simd::kPointBlock) % simd::kPointBlock;
 }
 
+DeformedPoints::DeformedPoints(std::span<const glm::dvec2> points, const PointDepths& depths,
+                               const DeformOptions& options)
+    : DeformedPoints(points, options) {
+    if (depths.w.size() != points.size() || depths.normal.size() != points.size())
+        throw Error(
+            "depths",
+            std::to_string(depths.w.size()) + " and " + std::to_string(depths.normal.size()) + " normals",
+            "must be as many as points, " + std::to_string(points.size()));
+    m_w.assign(m_u.size(), std::numeric_limits<double>::infinity());
+    for (LineVector<double>& normal : m_normal) normal.assign(m_u.size(), 0);
+    for (std::size_t slot = 0; slot < m_point.size(); ++slot) {
+        if (m_point[slot] < 0) continue;
+        const auto i = static_cast<std::size_t>(m_point[slot]);
+        // At an infinite depth no bump that has one moves a point.
+        if (std::isfinite(depths.w[i])) m_w[slot] = depths.w[i];
+        for (int c = 0; c < 3; ++c) {
+            if (!std::isfinite(depths.normal[i][c]))
+                throw Error("normal[" + std::to_string(i) + "]", shortest(depths.normal[i][c]),
+                            "must be a finite number");
+            m_normal[c][slot] = depths.normal[i][c];
+        }
+    }
+}
+
+simd::TermPoints DeformedPoints::term_points(std::size_t slot) const {
+    simd::TermPoints points{&m_u[slot], &m_v[slot]};
+    if (!m_w.empty()) {
+        points.w = &m_w[slot];
+        for (int c = 0; c < 3; ++c) points.normal[c] = &m_normal[c][slot];
+    }
+    return points;
+}
+
+void DeformedPoints::check_depth(std::span<const DeformationChange> changes) const {
+    if (m_w.empty()) check_plain(changes, "at points that are given without them");
+}
+
 void DeformedPoints::apply(std::span<const DeformationChange> changes) {
+    if (!m_u.empty()) check_depth(changes);
     m_sum.apply(changes);
     m_pending.insert(m_pending.end(), changes.begin(), changes.end());
 }
@@ -601,19 +672,20 @@ void DeformedPoints::slopes(const std::vector<Deformation>& list,
                             const std::vector<DeformationChange>* changes, const TakeSlopes& take,
                             const ParallelFor& parallel_for) const {
     const std::vector<DeformationChange> all = difference({}, list);
+    if (!m_u.empty()) check_depth(all);
     const std::vector<simd::PointTerm> terms = point_terms(all, m_sum);
     std::vector<simd::PointTerm> visiting;
     if (changes) visiting = point_terms(*changes, m_sum);
     constexpr std::size_t kMost = SurfaceSlopes::kMost;
     each_cell(visiting, !changes, terms, parallel_for,
               [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
-                  double by[6][kMost];
+                  double by[simd::kDeepSlopes][kMost];
                   for (std::size_t at = cell.begin; at < cell.end; at += kMost) {
                       const std::size_t slots = std::min(kMost, cell.end - at);
-                      point_slopes(near, &m_u[at], &m_v[at], slots, by);
+                      const int parameters = point_slopes(near, term_points(at), slots, by);
                       const auto end = std::find(&m_point[at], &m_point[at] + slots, -1);
                       if (end != &m_point[at])
-                          take({static_cast<int>(end - &m_point[at]), 0, &m_point[at], by});
+                          take({static_cast<int>(end - &m_point[at]), 0, &m_point[at], by, parameters});
                   }
               });
 }
@@ -643,8 +715,7 @@ std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const Paralle
     const auto draw_cell = [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
         std::int64_t* const sums[3] = {&m_sums[0][cell.begin], &m_sums[1][cell.begin],
                                        &m_sums[2][cell.begin]};
-        simd::deform_points(near.data(), near.size(), &m_u[cell.begin], &m_v[cell.begin],
-                            cell.end - cell.begin, sums);
+        simd::deform_points(near.data(), near.size(), term_points(cell.begin), cell.end - cell.begin, sums);
         written += write_slots(cell.begin, cell.end, base, out, displacement);
     };
     if (all || !terms.empty()) each_cell(terms, all, terms, parallel_for, draw_cell);
@@ -657,6 +728,7 @@ void DeformedPoints::write_with_slopes(const std::vector<Deformation>& list, con
                                        const TakeSlopes& take, const ParallelFor& parallel_for,
                                        T* displacement) {
     const std::vector<DeformationChange> changes = difference({}, list);
+    if (!m_u.empty()) check_depth(changes);
     DisplacementSum sum(m_sum.options());
     sum.apply(changes);
     m_sum = sum;
@@ -665,17 +737,18 @@ void DeformedPoints::write_with_slopes(const std::vector<Deformation>& list, con
     constexpr std::size_t kMost = SurfaceSlopes::kMost;
     each_cell({}, true, terms, parallel_for,
               [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
-                  double by[6][kMost];
+                  double by[simd::kDeepSlopes][kMost];
+                  const int parameters = m_w.empty() ? 2 : 6;
                   for (std::size_t at = cell.begin; at < cell.end; at += kMost) {
                       const std::size_t slots = std::min(kMost, cell.end - at);
                       std::int64_t* sums[3];
-                      double* slopes[6];
+                      double* slopes[simd::kDeepSlopes];
                       for (int c = 0; c < 3; ++c) std::fill_n(sums[c] = &m_sums[c][at], slots, 0);
-                      for (int c = 0; c < 6; ++c) std::fill_n(slopes[c] = by[c], slots, 0.0);
-                      simd::deform_points_with_slopes(near.data(), near.size(), &m_u[at], &m_v[at], slots,
-                                                      sums, slopes);
+                      for (int c = 0; c < 3 * parameters; ++c) std::fill_n(slopes[c] = by[c], slots, 0.0);
+                      simd::deform_points_with_slopes(near.data(), near.size(), term_points(at), slots, sums,
+                                                      slopes);
                       const std::int64_t points = write_slots(at, at + slots, base, out, displacement);
-                      if (points > 0) take({static_cast<int>(points), 0, &m_point[at], by});
+                      if (points > 0) take({static_cast<int>(points), 0, &m_point[at], by, parameters});
                   }
               });
 }
@@ -702,30 +775,36 @@ template void DeformedPoints::write_with_slopes(const std::vector<Deformation>&,
 // --- Normals
 
 void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3 gradient_v,
-                  double (&normals)[3][SurfaceSlopes::kMost]) {
+                  double (&normals)[3][SurfaceSlopes::kMost], glm::dvec3 gradient_w) {
     const std::size_t count = static_cast<std::size_t>(round_up(slopes.count, simd::kPointBlock));
-    const double* by[6];
-    for (int c = 0; c < 6; ++c) by[c] = slopes.by[c];
+    const bool by_depth = slopes.parameters > 2;
+    const double* by[9] = {};
+    for (int c = 0; c < (by_depth ? 9 : 6); ++c) by[c] = slopes.by[c];
     double* to[3];
     for (int c = 0; c < 3; ++c) to[c] = normals[c];
-    const double gradients[2][3] = {{gradient_u.x, gradient_u.y, gradient_u.z},
-                                    {gradient_v.x, gradient_v.y, gradient_v.z}};
-    simd::turn_normals(by, gradients, count, to);
+    const double gradients[3][3] = {{gradient_u.x, gradient_u.y, gradient_u.z},
+                                    {gradient_v.x, gradient_v.y, gradient_v.z},
+                                    {gradient_w.x, gradient_w.y, gradient_w.z}};
+    simd::turn_normals(by, by_depth, gradients, count, to);
 }
 
 void CornerSums::add(int k, const Edge& next, const Edge& previous, bool goes_inwards) {
     if (m_count == kMost) carry_out();
     const int at = m_count++;
     m_point[at] = k;
-    for (int c = 0; c < 6; ++c) m_by[c][at] = m_slopes.by[c][k];
+    for (int c = 0; c < 3 * m_slopes.parameters; ++c) m_by[c][at] = m_slopes.by[c][k];
     for (int c = 0; c < 3; ++c) {
         m_next[c][at] = next.points[c];
         m_previous[c][at] = previous.points[c];
     }
-    for (int c = 0; c < 2; ++c) {
-        m_next_by[c][at] = next.parameters[c];
-        m_previous_by[c][at] = previous.parameters[c];
-    }
+    const auto keep = [&](const Edge& edge, double(&by)[6][kMost]) {
+        for (int c = 0; c < 2; ++c) by[c][at] = edge.parameters[c];
+        if (m_slopes.parameters == 2) return;
+        by[2][at] = edge.depth;
+        for (int c = 0; c < 3; ++c) by[3 + c][at] = edge.normal[c];
+    };
+    keep(next, m_next_by);
+    keep(previous, m_previous_by);
     m_turns[at] = goes_inwards ? 2 * std::numbers::pi : 0;
 }
 
@@ -733,12 +812,13 @@ void CornerSums::carry_out() {
     // 2^16 unit vectors times angles up to 2 pi.
     constexpr double kUnit = 0x1p-44;
     simd::CornerEdges edges{};
-    for (int c = 0; c < 6; ++c) edges.by[c] = m_by[c];
+    edges.parameters = m_slopes.parameters;
+    for (int c = 0; c < 3 * edges.parameters; ++c) edges.by[c] = m_by[c];
     for (int c = 0; c < 3; ++c) {
         edges.next[c] = m_next[c];
         edges.previous[c] = m_previous[c];
     }
-    for (int c = 0; c < 2; ++c) {
+    for (int c = 0; c < edges.parameters; ++c) {
         edges.next_by[c] = m_next_by[c];
         edges.previous_by[c] = m_previous_by[c];
     }
@@ -801,6 +881,7 @@ void displacement_jets(const std::vector<Deformation>& list, std::span<const glm
                        const DeformOptions& options, DisplacementJet* out, const ParallelFor& parallel_for) {
     DisplacementSum sum(options);
     const std::vector<DeformationChange> changes = difference({}, list);
+    check_plain(changes, "at points that are given without them");
     sum.apply(changes);
     const std::vector<Term> all = terms_of(changes);
     const std::vector<simd::PointTerm> terms = point_terms(changes, sum);
@@ -824,6 +905,7 @@ void deformed_normals(const std::vector<Deformation>& list, std::span<const glm:
                         "must be one, or as many as points, " + std::to_string(points.size()));
     DisplacementSum sum(options);
     const std::vector<DeformationChange> changes = difference({}, list);
+    check_plain(changes, "at points that are given without them");
     sum.apply(changes);
     const std::vector<simd::PointTerm> terms = point_terms(changes, sum);
     each_chunk(points, terms, parallel_for, [&](const Chunk& chunk) {
@@ -837,7 +919,7 @@ void deformed_normals(const std::vector<Deformation>& list, std::span<const glm:
             u[i - chunk.begin] = points[i].x;
             v[i - chunk.begin] = points[i].y;
         }
-        point_slopes(near, u, v, Chunk::kMost, by);
+        point_slopes(near, {u, v}, Chunk::kMost, by);
         for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
             DisplacementJet jet;
             for (int c = 0; c < 3; ++c) {

@@ -8,7 +8,8 @@
 //
 // Errors. A Gaussian is cut off where it is certain to be below `cutoff`: a point whose distance from the
 // centre, along u or along v, is more than sqrt(-log(cutoff)) extents is not moved. A contribution is off by
-// at most half a resolution and by 16 2^-53 of V (deform/deform_kernels.h). error_bound() is the sum of all this.
+// at most half a resolution and by 16 2^-53 of V, 64 where it has depth or side (deform/deform_kernels.h). error_bound() is the
+// sum of all this. Along w a Gaussian is cut off as along u and v.
 // Range: a component of V is less than 2^50 resolutions, their magnitudes together less than 2^62.
 //
 // Surfaces are arrays of points x, y, z without gaps, float or double, rounded once from base + displacement.
@@ -30,7 +31,8 @@ namespace anamorph {
 
 namespace simd {
 struct PointTerm;
-}
+struct TermPoints;
+}  // namespace simd
 
 /// How exactly displacements are added.
 struct DeformOptions {
@@ -59,6 +61,7 @@ class DisplacementSum {
     struct Totals {
         std::int64_t units[3] = {};     ///< magnitudes of V
         std::int64_t gaussian[3] = {};  ///< magnitudes of V of the Gaussians
+        std::int64_t deep[3] = {};      ///< magnitudes of V of those with depth or side
         std::int64_t count = 0;
     };
     void add(Totals& totals, const Deformation& deformation, int sign) const;
@@ -82,7 +85,10 @@ struct SurfaceSlopes {
     int count;
     std::int64_t first;          ///< the points are first, first + 1, ...
     const std::int32_t* points;  ///< the numbers of the points, unless null
-    double (*by)[kMost];         ///< by[c][k]: derivative of component c at point k by u; by[3 + c][k]: by v
+    /// by[c][k]: derivative of component c at point k by u; by[3 + c][k]: by v; where there are 6 parameters, and so on by the depth
+    /// w and by the three coordinates of the normal.
+    double (*by)[kMost];
+    int parameters = 2;  ///< 2, or 6
 
     /// The number of the k-th point.
     std::int64_t point(int k) const { return points ? points[k] : first + k; }
@@ -95,23 +101,27 @@ struct SurfaceSlopes {
 using TakeSlopes = std::function<void(const SurfaceSlopes&)>;
 
 /// Turns normals[c][k], of any length, into the unit normals of the displaced surface at the points of `slopes`:
-/// space moves with the Jacobian I + D_u grad(u)^T + D_v grad(v)^T. They are 0 where there is no direction.
+/// space moves with the Jacobian I + D_u grad(u)^T + D_v grad(v)^T + D_w grad(w)^T. They are 0 where there is no direction.
+/// Derivatives by the normal are not read.
 void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3 gradient_v,
-                  double (&normals)[3][SurfaceSlopes::kMost]);
+                  double (&normals)[3][SurfaceSlopes::kMost], glm::dvec3 gradient_w = glm::dvec3(0.0));
 
 /// Vertex normals of a deformed surface at some points: the sum over the corners of its cells there of the corner's
 /// normal times its angle (Thuermer and Wuethrich 1998). Edges of the cells are the undeformed surface's tangents, and
-/// become e + D_u du + D_v dv. Sums are in fixed point, so that the order of the corners, up to 2^16 at a point, does
+/// become e + D_u du + D_v dv, and so on for each parameter. Sums are in fixed point, so that the order of the corners, up to 2^16 at a point, does
 /// not matter.
 class CornerSums {
   public:
     /// Keeps a reference to `slopes`.
     explicit CornerSums(const SurfaceSlopes& slopes) : m_slopes(slopes) {}
 
-    /// An edge to a neighbour on the undeformed surface: the differences in space and in the parameters (u, v).
+    /// An edge to a neighbour on the undeformed surface: the differences in space, in the parameters (u, v), and where slopes have
+    /// derivatives by them in depth and normal.
     struct Edge {
         glm::dvec3 points;
         glm::dvec2 parameters;
+        double depth = 0;
+        glm::dvec3 normal{0.0};
     };
     /// Adds a corner at the k-th point, between the edges to the next point of the cell and to the one before.
     void add(int k, const Edge& next, const Edge& previous, bool goes_inwards);
@@ -127,8 +137,14 @@ class CornerSums {
     std::int64_t m_sums[SurfaceSlopes::kMost][3] = {};
     int m_count = 0;
     int m_point[kMost];
-    double m_by[6][kMost], m_next[3][kMost], m_previous[3][kMost], m_next_by[2][kMost],
-        m_previous_by[2][kMost], m_turns[kMost];
+    double m_by[18][kMost], m_next[3][kMost], m_previous[3][kMost], m_next_by[6][kMost],
+        m_previous_by[6][kMost], m_turns[kMost];
+};
+
+/// What bumps with depth or side read of points beside their parameters: one for each point.
+struct PointDepths {
+    std::vector<double> w;           ///< what is not finite is not moved by bumps with depth
+    std::vector<glm::dvec3> normal;  ///< of length 1, or 0: neither side
 };
 
 /// A surface over a grid of u (of its columns) and v (of its rows), point (i, j) at j * columns + i. F of a
@@ -139,7 +155,8 @@ class DeformedGrid {
     /// that is not finite.
     DeformedGrid(std::vector<double> u, std::vector<double> v, const DeformOptions& options = {});
 
-    /// Registers changes of the list, which update() or write() carries out. Throws Error if they leave the range.
+    /// Registers changes of the list, which update() or write() carries out. Throws Error if they leave the range, or a bump has
+    /// depth or side, which points of a grid have not.
     void apply(std::span<const DeformationChange> changes);
     /// Registers one change of the list.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
@@ -194,6 +211,11 @@ class DeformedPoints {
     /// A surface of these points (u, v), not deformed yet. Throws Error that names the point on values that are not finite, and on
     /// 2^31 points or more.
     DeformedPoints(std::span<const glm::dvec2> points, const DeformOptions& options = {});
+    /// A surface whose points have depths and normals too, as many as points, that bumps with depth or side need; others are then
+    /// given with the same bits, and slopes have six parameters. Throws Error also on sizes that do not fit and on normals
+    /// that are not finite.
+    DeformedPoints(std::span<const glm::dvec2> points, const PointDepths& depths,
+                   const DeformOptions& options);
 
     /// Takes changes of the list; update() or write() carries them out. Throws Error if they are refused.
     void apply(std::span<const DeformationChange> changes);
@@ -237,6 +259,9 @@ class DeformedPoints {
     template <class T>
     std::int64_t write_slots(std::size_t begin, std::size_t end, const T* base, T* out,
                              T* displacement) const;
+    simd::TermPoints term_points(std::size_t slot) const;
+    /// Throws Error on changes that need depths where there are none.
+    void check_depth(std::span<const DeformationChange> changes) const;
     /// Calls body(cell, near) for cells with points: for all of them if `all`, else for those within the cutoff of a
     /// term of `visiting`. near: the terms of `terms` within whose cutoff the cell is.
     void each_cell(
@@ -248,6 +273,7 @@ class DeformedPoints {
     std::vector<Cell> m_cells;
     std::vector<std::size_t> m_cell_rows;  ///< first cell of each row of cells, and the end
     LineVector<double> m_u, m_v;           ///< by slot; NaN where a slot is empty
+    LineVector<double> m_w, m_normal[3];   ///< by slot, where there are depths
     std::vector<std::int32_t> m_point;     ///< by slot; -1 where it is empty
     LineVector<std::int64_t> m_sums[3];    ///< by slot
     std::vector<DeformationChange> m_pending;
@@ -258,7 +284,7 @@ class DeformedPoints {
 /// point's numbers do not depend on the order of the list nor on the other points. It is fastest where neighbours
 /// in `points` are close together. A Gaussian that is cut off is missing up to 2 reach cutoff |V| / a of a
 /// derivative. `out` has room for as many as `points`. Throws Error on points that are not finite and on lists out of
-/// range.
+/// range or with depths or sides.
 void displacement_jets(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
                        const DeformOptions& options, DisplacementJet* out,
                        const ParallelFor& parallel_for = serial_for);

@@ -101,6 +101,7 @@ ParameterPlane::ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 
     if (!(squared > 1e-20) || !finite(1 / length_u * u) || !finite(1 / length_v * v))
         throw Error("axis_u and axis_v", written(axis_u) + " and " + written(axis_v),
                     "must be two directions that are not parallel");
+    m_normal = across / std::sqrt(squared);
     m_gradient_u = glm::cross(v, across) / squared / length_u;
     m_gradient_v = glm::cross(across, u) / squared / length_v;
 }
@@ -110,10 +111,20 @@ glm::dvec2 ParameterPlane::parameters(glm::dvec3 p) const {
     return {glm::dot(m_gradient_u, from), glm::dot(m_gradient_v, from)};
 }
 
+double ParameterPlane::depth(glm::dvec3 p) const {
+    return glm::dot(m_normal, p - m_origin);
+}
+
 PlaneWarp::PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>& list) : m_plane(plane) {
     for (const Deformation& d : list) {
         check_deformation(d);
         if (!d.enabled || d.vector == glm::dvec3(0.0)) continue;
+        if (d.has_depth())
+            throw Error("extent", shortest(d.extent_w),
+                        "a transform of space moves all depths: must be without a third number");
+        if (d.has_side())
+            throw Error("side", d.side == DeformationSide::front ? "front" : "back",
+                        "a transform of space has no sides: must be both");
         m_list.push_back(d);
         if (glm::dot(plane.gradient_u(), d.vector) != 0 || glm::dot(plane.gradient_v(), d.vector) != 0)
             m_across = false;

@@ -32,6 +32,10 @@ class ParameterPlane {
 
     /// The parameters (u, v) of a point's projection onto the plane; not finite where p is not.
     glm::dvec2 parameters(glm::dvec3 p) const;
+    /// The depth w of a point: its distance from the plane, to the side of normal(); not finite where p is not.
+    double depth(glm::dvec3 p) const;
+    /// The unit normal axis_u x axis_v / |axis_u x axis_v|, which is the gradient of the depth.
+    glm::dvec3 normal() const { return m_normal; }
     /// The point of the plane that has the parameters s.
     glm::dvec3 point(glm::dvec2 s) const { return m_origin + s.x * m_axis_u + s.y * m_axis_v; }
 
@@ -46,7 +50,7 @@ class ParameterPlane {
 
   private:
     glm::dvec3 m_origin{0.0}, m_axis_u{1, 0, 0}, m_axis_v{0, 1, 0};
-    glm::dvec3 m_gradient_u{1, 0, 0}, m_gradient_v{0, 1, 0};
+    glm::dvec3 m_gradient_u{1, 0, 0}, m_gradient_v{0, 1, 0}, m_normal{0, 0, 1};
 };
 
 /// Whether a map of the plane folds.
@@ -65,7 +69,8 @@ struct Fold {
 class PlaneWarp {
   public:
     PlaneWarp() = default;
-    /// The map that a list makes over a plane. Throws Error on a deformation that check_deformation refuses.
+    /// The map that a list makes over a plane. Throws Error on a deformation that check_deformation refuses, and on one with depth
+    /// or side: what is above and below moves along.
     PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>& list);
 
     const ParameterPlane& plane() const { return m_plane; }

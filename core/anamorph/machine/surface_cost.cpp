@@ -63,7 +63,11 @@ OperationCounts counts_of(const FormulaProgram& program) {
 /// A bump moves a point by V F (4.1): the kernel, and a product for each coordinate.
 OperationCounts counts_of(const Deformation& bump) {
     OperationCounts counts;
-    influence(bump, Counted(counts), Counted(counts));
+    const Counted number(counts);
+    if (bump.is_plain())
+        influence(bump, number, number);
+    else
+        influence(bump, number, number, number, number);
     counts.products += kCoordinates;
     return counts;
 }

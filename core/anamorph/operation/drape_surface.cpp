@@ -231,6 +231,10 @@ void DrapeSurfaces::blend(const ParameterValues& values, surface::SurfaceSum& su
         if (designed != m_designed.end() && !designed->second.positions) {
             for (Deformation moved : designed->second.deformations) {
                 moved.vector *= weights[i];
+                // The side stays, though the vector turns round.
+                if (weights[i] < 0 && moved.has_side())
+                    moved.side =
+                        moved.side == DeformationSide::front ? DeformationSide::back : DeformationSide::front;
                 sum.deformations.push_back(moved);
             }
             continue;

@@ -2,10 +2,12 @@
 #include "anamorph/surface/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 
 #include "anamorph/deform/deformation_reach.h"
+#include "anamorph/error.h"
 #include "anamorph/number/rounded.h"
 #include "anamorph/surface/shape/all.h"
 
@@ -87,15 +89,99 @@ Jet<Interval, 2> gaussian_range(const Deformation& d, const Interval& u, const I
     return f;
 }
 
+using IntervalJet = Jet<Interval, 2>;
+
+/// f(z), where f and its derivative are enclosed over the box, and half its second derivative wherever it exists.
+IntervalJet composed(const Interval& f, const Interval& slope, const Interval& bend, const IntervalJet& z) {
+    IntervalJet r(f);
+    r.c[1] = slope * z.c[1];
+    r.c[2] = slope * z.c[2];
+    r.c[3] = slope * z.c[3] + bend * square(z.c[1]);
+    r.c[4] = slope * z.c[4] + bend * (z.c[1] * z.c[2] * 2.0);
+    r.c[5] = slope * z.c[5] + bend * square(z.c[2]);
+    return r;
+}
+
+/// Encloses Wendland's kernel of three ways as wendland_range() does that of two: F_x = -20 (1 - r)^3 x and
+/// F_xz = 60 (1 - r)^2 x z / r, with x = (u - c_u) / a_u, y likewise, and z any function of u and v.
+IntervalJet deep_wendland_range(const Deformation& d, const Interval& u, const Interval& v,
+                                const IntervalJet& z) {
+    const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
+    const std::array<Interval, 3> at = {(u - d.center.x) * a, (v - d.center.y) * b, z.c[0]};
+    // The derivatives of x, y and z by u and v.
+    const std::array<std::array<Interval, 2>, 3> by = {
+        {{a, Interval(0)}, {Interval(0), b}, {z.c[1], z.c[2]}}};
+    const Interval r = min(sqrt(square(at[0]) + square(at[1]) + square(at[2])), Interval(1)),
+                   rest = max(1.0 - r, Interval(0));
+    const Interval squared = square(rest), cubed = squared * rest;
+    const auto second = [&](std::size_t i, std::size_t j) {
+        const Interval bound = i == j ? Interval(0, r.hi) : Interval(-r.hi / 2, r.hi / 2);
+        const Interval product = i == j ? square(at[i]) : at[i] * at[j];
+        const Interval quotient = r.lo > 0 ? product / r : bound;
+        const Interval over_r(std::max(quotient.lo, bound.lo), std::min(quotient.hi, bound.hi));
+        return i == j ? cubed * -20.0 + squared * over_r * 60.0 : squared * over_r * 60.0;
+    };
+    const auto along = [&](std::size_t s, std::size_t t) {
+        Interval sum(0);
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j) sum += second(i, j) * (by[i][s] * by[j][t]);
+        return sum;
+    };
+    const std::array<Interval, 3> first = {cubed * at[0] * -20.0, cubed * at[1] * -20.0,
+                                           cubed * at[2] * -20.0};
+    IntervalJet f(square(squared) * (r * 4.0 + 1.0));
+    f.c[1] = first[0] * a + first[2] * z.c[1];
+    f.c[2] = first[1] * b + first[2] * z.c[2];
+    f.c[3] = along(0, 0) * 0.5 + first[2] * z.c[3];
+    f.c[4] = along(0, 1) + first[2] * z.c[4];
+    f.c[5] = along(1, 1) * 0.5 + first[2] * z.c[5];
+    return f;
+}
+
+/// Encloses side_share(), which rises: H(t) = t^2 (3 - 2 t), H' = 6 t (1 - t), H'' = 6 - 12 t, all with t from 0 to 1, and
+/// H'' also 0 where t goes beyond.
+IntervalJet side_range(const IntervalJet& facing) {
+    const Interval t = facing.c[0] * 2.0, within = min(max(t, Interval(0)), Interval(1));
+    const auto value = [](double at) { return square(Interval(at)) * (3.0 - Interval(at) * 2.0); };
+    const auto slope = [](double at) { return Interval(at) * (1.0 - Interval(at)) * 6.0; };
+    Interval rise = hull(slope(within.lo), slope(within.hi));
+    if (within.lo <= 0.5 && within.hi >= 0.5) rise.hi = std::max(rise.hi, 1.5);
+    Interval bend = 6.0 - within * 12.0;
+    if (!(t.lo > 0 && t.hi < 1)) bend = hull(bend, Interval(0));
+    if (t.hi < 0 || t.lo > 1) bend = rise = Interval(0);
+    // By the chain rule with t = 2 n . V / |V|.
+    return composed({value(within.lo).lo, value(within.hi).hi}, rise * 2.0, bend * 2.0, facing);
+}
+
 /// influence(), and what encloses it.
 template <class T>
 T influence_of(const Deformation& d, const T& u, const T& v) {
     return influence(d, u, v);
 }
 /// Encloses influence() where u and v are the variables themselves.
-Jet<Interval, 2> influence_of(const Deformation& d, const Jet<Interval, 2>& u, const Jet<Interval, 2>& v) {
+IntervalJet influence_of(const Deformation& d, const IntervalJet& u, const IntervalJet& v) {
     return d.kernel == DeformationKernel::wendland_c2 ? wendland_range(d, u.value(), v.value())
                                                       : gaussian_range(d, u.value(), v.value());
+}
+/// The same with depth or side.
+template <class T>
+T influence_of(const Deformation& d, const T& u, const T& v, const T& w, const T& facing) {
+    return influence(d, u, v, w, facing);
+}
+IntervalJet influence_of(const Deformation& d, const IntervalJet& u, const IntervalJet& v,
+                         const IntervalJet& w, const IntervalJet& facing) {
+    IntervalJet f = influence_of(d, u, v);
+    if (d.has_depth()) {
+        const IntervalJet z =
+            (w - IntervalJet(Interval(d.center_w))) * IntervalJet(Interval(1) / Interval(d.extent_w));
+        if (d.kernel == DeformationKernel::wendland_c2) {
+            f = deep_wendland_range(d, u.value(), v.value(), z);
+        } else {
+            const GaussianRange deep(z.c[0]);
+            f = f * composed(deep.value, deep.slope, deep.bend, z);
+        }
+    }
+    return d.has_side() ? f * side_range(facing) : f;
 }
 
 /// What is added up, read with the numbers that a DrapedSurface is read with. Jets are of u and v, the variables
@@ -109,6 +195,13 @@ class SurfacePart {
     virtual SurfacePoint<Jet<double, 1>> point(const Jet<double, 1>& u, const Jet<double, 1>& v) const = 0;
     virtual SurfacePoint<Jet<Interval, 2>> point(const Jet<Interval, 2>& u,
                                                  const Jet<Interval, 2>& v) const = 0;
+    // The unit normals, of parts that has_smooth_normals() allows; (0, 0, 0) of others.
+    virtual SurfacePoint<double> normal(const double& u, const double& v) const = 0;
+    virtual SurfacePoint<long double> normal(const long double& u, const long double& v) const = 0;
+    virtual SurfacePoint<Interval> normal(const Interval& u, const Interval& v) const = 0;
+    virtual SurfacePoint<Jet<double, 1>> normal(const Jet<double, 1>& u, const Jet<double, 1>& v) const = 0;
+    virtual SurfacePoint<Jet<Interval, 2>> normal(const Jet<Interval, 2>& u,
+                                                  const Jet<Interval, 2>& v) const = 0;
 };
 
 /// Reads `Reader::read`, a template, with those.
@@ -133,7 +226,30 @@ class ReadPart final : public SurfacePart {
         return m_reader.read(u, v);
     }
 
+    SurfacePoint<double> normal(const double& u, const double& v) const override { return normal_at(u, v); }
+    SurfacePoint<long double> normal(const long double& u, const long double& v) const override {
+        return normal_at(u, v);
+    }
+    SurfacePoint<Interval> normal(const Interval& u, const Interval& v) const override {
+        return normal_at(u, v);
+    }
+    SurfacePoint<Jet<double, 1>> normal(const Jet<double, 1>& u, const Jet<double, 1>& v) const override {
+        return normal_at(u, v);
+    }
+    SurfacePoint<Jet<Interval, 2>> normal(const Jet<Interval, 2>& u,
+                                          const Jet<Interval, 2>& v) const override {
+        return normal_at(u, v);
+    }
+
   private:
+    template <class T>
+    SurfacePoint<T> normal_at(const T& u, const T& v) const {
+        if constexpr (requires { m_reader.normal(u, v); })
+            return m_reader.normal(u, v);
+        else
+            return {T(0.0), T(0.0), T(0.0)};
+    }
+
     Reader m_reader;
 };
 
@@ -165,6 +281,10 @@ struct FormulaReader {
                 return plus(p, formula.normal(u, v), T(height * scale));
             }
         return p;
+    }
+    template <class T>
+    SurfacePoint<T> normal(const T& u, const T& v) const requires HasNormal<Formula> {
+        return formula.normal(u, v);
     }
 };
 
@@ -266,7 +386,13 @@ class SummedSurface final : public DrapedSurface {
                 to[j * u.size() + i] = {p.x, p.y, p.z};
             }
         std::vector<double> across;
-        for (std::size_t k = 0; k < m_deformations.size(); ++k) move_grid(k, u, v, across, to);
+        const std::vector<Seen<double>> seen = seen_on_grid(u, v, to);
+        for (std::size_t k = 0; k < m_deformations.size(); ++k) {
+            if (m_deformations[k].is_plain())
+                move_grid(k, u, v, across, to);
+            else
+                move_deep_grid(m_deformations[k], u, v, seen, to);
+        }
     }
     double rounding(double u, double v) const noexcept override {
         // Whatever an operation rounds, intervals enclose it. Eight times that: a surface's own numbers, such as turns in
@@ -286,7 +412,8 @@ class SummedSurface final : public DrapedSurface {
     }
     std::array<long double, 3> truth(long double u, long double v) const noexcept override {
         SurfacePoint<long double> p = sum_of_parts(u, v);
-        for (const Deformation& d : m_deformations) p = moved(p, d, u, v);
+        const Seen<long double> seen = seen_at(p, u, v);
+        for (const Deformation& d : m_deformations) p = moved(p, d, u, v, seen);
         return {p.x, p.y, p.z};
     }
     SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
@@ -313,9 +440,47 @@ class SummedSurface final : public DrapedSurface {
             sum = plus(sum, m_parts[i]->point(u, v), T(m_weights[i]));
         return sum;
     }
+    /// What deformations with depth or side see of the undeformed surface: its depth, which is z, and the mean of its parts'
+    /// normals, by the magnitudes of their weights.
     template <class T>
-    static SurfacePoint<T> moved(const SurfacePoint<T>& p, const Deformation& d, const T& u, const T& v) {
-        const T share = influence_of(d, u, v);
+    struct Seen {
+        T w{0.0};
+        SurfacePoint<T> normal{T(0.0), T(0.0), T(0.0)};
+
+        T facing(const Deformation& d) const {
+            const Triple<T> direction = side_direction<T>(d);
+            return normal.x * direction.x + normal.y * direction.y + normal.z * direction.z;
+        }
+    };
+    template <class T>
+    Seen<T> seen_at(const SurfacePoint<T>& undeformed, const T& u, const T& v) const {
+        Seen<T> seen;
+        if (!m_deep) return seen;
+        seen.w = undeformed.z;
+        if (!m_sided) return seen;
+        double magnitudes = 0;
+        for (const double weight : m_weights) magnitudes += std::fabs(weight);
+        for (std::size_t i = 0; i < m_parts.size() && magnitudes > 0; ++i)
+            seen.normal = plus(seen.normal, m_parts[i]->normal(u, v), T(m_weights[i] / magnitudes));
+        return seen;
+    }
+    std::vector<Seen<double>> seen_on_grid(std::span<const double> u, std::span<const double> v,
+                                           const glm::dvec3* undeformed) const {
+        std::vector<Seen<double>> seen;
+        for (std::size_t j = 0; j < v.size() && m_deep; ++j)
+            for (std::size_t i = 0; i < u.size(); ++i, ++undeformed)
+                seen.push_back(seen_at<double>({undeformed->x, undeformed->y, undeformed->z}, u[i], v[j]));
+        return seen;
+    }
+    template <class T>
+    static T share_of(const Deformation& d, const T& u, const T& v, const Seen<T>& seen) {
+        if (d.is_plain()) return influence_of(d, u, v);
+        return influence_of(d, u, v, seen.w, d.has_side() ? seen.facing(d) : T(0.0));
+    }
+    template <class T>
+    static SurfacePoint<T> moved(const SurfacePoint<T>& p, const Deformation& d, const T& u, const T& v,
+                                 const Seen<T>& seen) {
+        const T share = share_of(d, u, v, seen);
         const auto add = [&](const T& a, double k) { return k == 0 ? a : T(a + share * k); };
         return {add(p.x, d.vector.x), add(p.y, d.vector.y), add(p.z, d.vector.z)};
     }
@@ -346,12 +511,19 @@ class SummedSurface final : public DrapedSurface {
             }
         }
     }
+    static void move_deep_grid(const Deformation& d, std::span<const double> u, std::span<const double> v,
+                               const std::vector<Seen<double>>& seen, glm::dvec3* to) {
+        for (std::size_t j = 0; j < v.size(); ++j)
+            for (std::size_t i = 0; i < u.size(); ++i)
+                to[j * u.size() + i] += share_of(d, u[i], v[j], seen[j * u.size() + i]) * d.vector;
+    }
     template <class T>
     SurfacePoint<T> point(const T& u, const T& v) const {
         SurfacePoint<T> p = sum_of_parts(u, v);
+        const Seen<T> seen = seen_at(p, u, v);
         std::size_t near = 0;
         m_reach.each_near(box_of(u), box_of(v), [&](std::size_t i) {
-            p = moved(p, m_deformations[i], u, v);
+            p = moved(p, m_deformations[i], u, v, seen);
             ++near;
         });
         if (near < m_deformations.size()) add_unknown(p, m_reach.far());
@@ -359,16 +531,32 @@ class SummedSurface final : public DrapedSurface {
     }
     /// How far point() in double may be from the exact point, for rounding() alone: where deformations are concerned, the
     /// point itself is not known. x and y of a kernel are off by 3 units of 2^-53 of themselves, r^2 by 8, and, with what
-    /// exp or the polynomial lose, F by less than 16 (r^2 + 1) F; each sum, by one unit of what is added up.
+    /// exp or the polynomial lose, F by less than 16 (r^2 + 1) F; each sum, by one unit of what is added up. With depth or side, F is
+    /// also off by what the depth and the normal may be, times the greatest slopes of F by z, 20 r (1 - r)^3 <= 2.2, and of S by
+    /// n . V / |V|, 3; S and n . V / |V| round as kDeepError counts it.
     SurfacePoint<Interval> point(const Interval& u, const Interval& v) const {
         SurfacePoint<Interval> p = sum_of_parts(u, v);
+        const Seen<Interval> seen = seen_at(p, u, v);
         glm::dvec3 lost(0.0), added(magnitude(p.x), magnitude(p.y), magnitude(p.z));
         m_reach.each_near(u, v, [&](std::size_t i) {
             const Deformation& d = m_deformations[i];
             const double x = (u.lo - d.center.x) / d.extent.x, y = (v.lo - d.center.y) / d.extent.y;
-            const glm::dvec3 moved = glm::abs(d.vector) * kernel_value(d.kernel, x, y);
+            glm::dvec3 moved = glm::abs(d.vector) * kernel_value(d.kernel, x, y);
+            double square_of_z = 0;
+            if (d.has_depth()) {
+                const double z = (seen.w.lo - d.center_w) / d.extent_w;
+                // Of a side, as if it were all there.
+                const double f = influence(d, u.lo, v.lo, seen.w.lo, 1.0);
+                moved = glm::abs(d.vector) * f;
+                square_of_z = f > 0 ? z * z : 0;
+                lost += glm::abs(d.vector) * (2.2 * 0x1p53 * (seen.w.hi - seen.w.lo) / d.extent_w);
+            }
+            if (d.has_side()) {
+                const Interval facing = seen.facing(d);
+                lost += moved * (64 + 3 * 0x1p53 * (facing.hi - facing.lo));
+            }
             added += moved;
-            lost += added + moved * (16 * (x * x + y * y + 1));
+            lost += added + moved * (16 * (x * x + y * y + square_of_z + 1));
         });
         add_unknown(p, lost * 0x1p-53 + m_reach.far());
         return p;
@@ -380,6 +568,7 @@ class SummedSurface final : public DrapedSurface {
     std::optional<TextReader> m_text;
     double m_text_weight = 0;                 ///< the sum of its magnitudes
     std::vector<Deformation> m_deformations;  ///< with v down
+    bool m_deep = false, m_sided = false;     ///< has any of them depth or side, a side?
     DeformationReach m_reach;
 };
 
@@ -426,6 +615,13 @@ SummedSurface::SummedSurface(const SurfaceSum& sum)
     for (const auto& field : {sum.positions, sum.heights})
         if (field) m_fields.push_back(field);
     if (sum.formula) m_text = TextReader{*sum.formula};
+    m_deep = needs_depth(m_deformations);
+    m_sided = needs_normals(m_deformations);
+    for (const SurfaceSum::Part& part : sum.parts)
+        if (m_sided && !has_smooth_normals(part.which))
+            throw Error(
+                "side", "front or back",
+                "the normals of " + all_surface_names()[part.which] + " may turn abruptly: must be both");
 }
 
 }  // namespace

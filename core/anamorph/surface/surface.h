@@ -82,12 +82,15 @@ struct SurfaceSum {
     std::optional<SpaceFormula> formula = {};
     std::shared_ptr<const SampledField> heights = {};  ///< heights of parts that has_smooth_normals() allows
     double height_scale = 0;                           ///< scale of the heights of parts of weight 1
-    std::vector<Deformation> deformations = {};        ///< their u and v run from 0 to 1 with v up
+    /// Their u and v run from 0 to 1 with v up, and their depth is z before they move it. Their sides go by the mean of the parts'
+    /// normals before reliefs, by the magnitudes of weights.
+    std::vector<Deformation> deformations = {};
 
     bool operator==(const SurfaceSum&) const = default;
 };
 
-/// Makes a sum of surfaces. Throws Error on a deformation that check_deformation refuses.
+/// Makes a sum of surfaces. Throws Error on a deformation that check_deformation refuses, and on one with a side where not all parts
+/// has_smooth_normals() allows.
 std::shared_ptr<const DrapedSurface> make_surface(const SurfaceSum& sum);
 
 /// Makes a single surface, with deformations.

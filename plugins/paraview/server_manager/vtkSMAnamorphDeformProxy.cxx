@@ -39,7 +39,7 @@ struct WhileHeld {
 struct vtkSMAnamorphDeformProxy::Edits {
     bool begun = false;
     std::vector<double> list;  ///< without what the handles do
-    std::optional<Point> center, corner, vector;
+    std::optional<Point> center, corner, vector, tip;
     std::optional<Frame> frame;  ///< that the handles are shown in
 };
 
@@ -80,6 +80,11 @@ struct Row {
         for (unsigned int i = 0; i < 2; ++i)
             if (const double extent = std::fabs(at[i] - center(i)); extent > 0) numbers[kExtent + i] = extent;
     }
+    /// The vector from the centre's handle to that of the tip, unless it is where the row has it.
+    void move_tip(const Point& tip, const Point& from) const {
+        for (unsigned int c = 0; c < 3; ++c)
+            if (tip[c] != from[c] + numbers[kVector + c]) numbers[kVector + c] = tip[c] - from[c];
+    }
     void set_vector(const Point& vector) const { std::copy(vector.begin(), vector.end(), numbers + kVector); }
 };
 
@@ -92,6 +97,12 @@ std::optional<Row> selected_row(vtkSMProxy* proxy, std::vector<double>& list) {
     const std::optional<Frame> frame = frame_of(proxy);
     if (!frame || list.size() < first + columns) return std::nullopt;
     return Row{list.data() + first, *frame};
+}
+
+/// How far from the plane the centre's handle is: where it is, if it was put there, or as high as the surface.
+double height_of_handles(vtkSMProxy* proxy, const Row& row, bool put, double surface) {
+    const std::optional<Point> at = point_of(proxy, "SelectedCenter");
+    return put && at ? row.frame.parameters(*at)[2] : surface;
 }
 
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
@@ -120,8 +131,10 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     if (flag == 0 || this->InStep) return;
     const WhileHeld step(this->InStep);
     if (is_one_of(name, {"ImportFile", "ExportFile"})) this->FilesPending = true;
+    // Where rows are set anew, so are their depths: the server then has those of the rows that there are.
+    if (is_one_of(name, {"Deformations"})) this->Superclass::SetPropertyModifiedFlag("Depths", 1);
     if (is_one_of(name,
-                  {"SelectedCenter", "SelectedCorner", "SelectedVector", "SelectedDeformation",
+                  {"SelectedCenter", "SelectedCorner", "SelectedTip", "SelectedVector", "SelectedDeformation",
                    "Deformations", "Input", "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"}))
         this->Edited(name);
 }
@@ -170,6 +183,10 @@ void vtkSMAnamorphDeformProxy::ImportDeformations(const char* file) {
     reader->UpdatePropertyInformation(reader->GetProperty("DeformationsInfo"));
     const std::vector<double> read = numbers_of(reader, "DeformationsInfo");
     set_numbers(this, "Deformations", read.data(), read.size());
+    reader->UpdatePropertyInformation(reader->GetProperty("DepthsInfo"));
+    const std::vector<double> depths = numbers_of(reader, "DepthsInfo");
+    const bool any = std::any_of(depths.begin(), depths.end(), [](double depth) { return depth != 0; });
+    set_numbers(this, "Depths", depths.data(), any ? depths.size() : 0);
 }
 
 // ---- The list and the handles ----
@@ -184,7 +201,11 @@ void vtkSMAnamorphDeformProxy::Edited(const char* name) {
         this->HandlesPut = true;
     }
     if (changed == "SelectedCorner") edits.corner = point_of(this, name);
-    if (changed == "SelectedVector") edits.vector = point_of(this, name);
+    if (changed == "SelectedVector") {
+        edits.vector = point_of(this, name);
+        edits.tip.reset();
+    }
+    if (changed == "SelectedTip") edits.tip = point_of(this, name);
     if (changed == "Input") this->UsedPlaneKnown = false;
     this->Resolve();
 }
@@ -196,6 +217,12 @@ void vtkSMAnamorphDeformProxy::Resolve() {
         if (edits.center) row->move_center(*edits.center);
         if (edits.corner) row->move_corner(*edits.corner);
         if (edits.vector) row->set_vector(*edits.vector);
+        if (edits.tip) {
+            // From where the centre's handle is to be shown, whatever is set first.
+            const double height = height_of_handles(this, *row, this->HandlesPut, this->Heights[0]);
+            row->move_tip(*edits.tip,
+                          edits.center.value_or(row->frame.point(row->center(0), row->center(1), height)));
+        }
     }
     set_numbers(this, "Deformations", list.data(), list.size());
     this->ShowHandles(false);
@@ -209,16 +236,22 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
     const std::optional<Point> at = point_of(this, "SelectedCenter");
     if (!row || !at) return;
     edits.frame = row->frame;
-    // They are on the plane, or where they have been put across it.
-    const double height = this->HandlesPut ? row->frame.parameters(*at)[2] : 0;
+    // They are on the deformed surface of the last update, or where they have been put across the plane since.
+    const bool lifted = edits.center.has_value() || (this->HandlesPut && !all);
+    const double height = height_of_handles(this, *row, lifted, this->Heights[0]),
+                 corner_height = lifted ? height : this->Heights[1];
+    if (all) this->HandlesPut = false;
     const auto show = [&](const char* name, bool put, const double* numbers) {
         if (all || !put) set_numbers(this, name, numbers, 3);
     };
     show("SelectedCenter", edits.center.has_value(),
          row->frame.point(row->center(0), row->center(1), height).data());
     show("SelectedCorner", edits.corner.has_value(),
-         row->frame.point(row->corner(0), row->corner(1), height).data());
-    show("SelectedVector", edits.vector.has_value(), row->numbers + kVector);
+         row->frame.point(row->corner(0), row->corner(1), corner_height).data());
+    Point tip = point_of(this, "SelectedCenter").value_or(*at);
+    for (unsigned int c = 0; c < 3; ++c) tip[c] += row->numbers[kVector + c];
+    show("SelectedTip", edits.tip.has_value(), tip.data());
+    show("SelectedVector", edits.vector.has_value() && !edits.tip, row->numbers + kVector);
 }
 
 // ---- The plane ----
@@ -229,10 +262,11 @@ void vtkSMAnamorphDeformProxy::PostUpdateData(bool using_cache) {
     if (!updated) return;
     const WhileHeld step(this->InStep);
     this->TakeUsedPlane();
+    const bool moved = this->TakeHeights();
     const std::optional<Frame> shown = this->Pending->frame;
     *this->Pending = Edits();
     this->Pending->frame = shown;
-    if (frame_of(this) != shown) this->ShowHandles(true);
+    if (moved || frame_of(this) != shown || !this->TipIsShown()) this->ShowHandles(true);
 }
 
 void vtkSMAnamorphDeformProxy::TakeUsedPlane() {
@@ -245,6 +279,26 @@ void vtkSMAnamorphDeformProxy::TakeUsedPlane() {
         vtkSMPropertyHelper(this, name).Get(to, 3);
         to += 3;
     }
+}
+
+/// Is the tip's handle where it belongs? A state from before there was one has it elsewhere.
+bool vtkSMAnamorphDeformProxy::TipIsShown() {
+    const std::optional<Point> center = point_of(this, "SelectedCenter"), tip = point_of(this, "SelectedTip"),
+                               vector = point_of(this, "SelectedVector");
+    if (!center || !tip || !vector) return true;
+    for (unsigned int c = 0; c < 3; ++c)
+        if ((*tip)[c] != (*center)[c] + (*vector)[c]) return false;
+    return true;
+}
+
+/// The heights of the handles of the last update. True if they are others than before.
+bool vtkSMAnamorphDeformProxy::TakeHeights() {
+    this->UpdatePropertyInformation(this->GetProperty("SelectedHeights"));
+    const std::vector<double> heights = numbers_of(this, "SelectedHeights");
+    const Point before = {this->Heights[0], this->Heights[1], 0};
+    for (std::size_t i = 0; i < 2; ++i)
+        this->Heights[i] = i < heights.size() && std::isfinite(heights[i]) ? heights[i] : 0;
+    return before != Point{this->Heights[0], this->Heights[1], 0};
 }
 
 void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* name) {

@@ -5,8 +5,8 @@
  *
  * The list is the property Deformations, of a row of numbers for each deformation: c_u, c_v, a_u, a_v, V_x,
  * V_y, V_z, kernel, enabled (Oka 1987, eq. 4.1). A table in a panel edits it, but a handle in a view wants
- * properties of its own, in space: SelectedCenter, SelectedCorner (centre + extent) and SelectedVector show
- * row SelectedDeformation. What is written to them is written to the row, and they follow the list, the
+ * properties of its own, in space: SelectedCenter, SelectedCorner (centre + extent), SelectedTip (the centre's
+ * handle + V) and SelectedVector show row SelectedDeformation, after an update on the deformed surface. What is written to them is written to the row, and they follow the list, the
  * selection and the plane of (u, v).
  *
  * What is set between two updates of the filter acts together, each property with its last value, whatever
@@ -63,6 +63,8 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void Resolve();
     void ShowHandles(bool all);
     void TakeUsedPlane();
+    bool TakeHeights();
+    bool TipIsShown();
     void ImportDeformations(const char* file);
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
@@ -72,6 +74,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
     double UsedPlane[9] = {};
     bool UsedPlaneKnown = false;
+    double Heights[2] = {};          ///< of the handles of the centre and the corner over the plane
     std::unique_ptr<Edits> Pending;  ///< edits since the last update
 };
 
