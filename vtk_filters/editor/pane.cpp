@@ -2,6 +2,8 @@
 #include "pane.h"
 
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkProperty2D.h>
 
@@ -18,6 +20,9 @@ namespace {
 constexpr double kZoomStep = 1.25, kLeastScale = 1e-3;
 constexpr int kMostMagnified = 32;
 constexpr unsigned char kBackground = 40;
+constexpr std::array<double, 3> kEdge{0.1, 0.1, 0.1};
+/// Pixels of the window around a picture that is shown whole.
+constexpr int kMargin = 6;
 
 Size scaled(const Size& size, double scale) {
     const auto side = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
@@ -36,12 +41,21 @@ double next_scale(double scale, bool larger) {
 
 Overlay::Overlay(vtkRenderer* renderer, const std::array<double, 3>& color, float size) {
     m_mapper->SetInputData(m_data);
-    m_actor->SetMapper(m_mapper);
-    m_actor->GetProperty()->SetColor(color[0], color[1], color[2]);
-    m_actor->GetProperty()->SetLineWidth(size);
-    m_actor->GetProperty()->SetPointSize(size);
-    renderer->AddActor2D(m_actor);
+    const auto add = [&](vtkActor2D* actor, const std::array<double, 3>& of, float wide) {
+        actor->SetMapper(m_mapper);
+        actor->GetProperty()->SetColor(of[0], of[1], of[2]);
+        actor->GetProperty()->SetLineWidth(wide);
+        actor->GetProperty()->SetPointSize(wide);
+        renderer->AddActor2D(actor);
+    };
+    add(m_edge, kEdge, size + 2);
+    add(m_actor, color, size);
     this->set_points({});
+}
+
+void Overlay::show(bool visible) {
+    m_edge->SetVisibility(visible);
+    m_actor->SetVisibility(visible);
 }
 
 void Overlay::set_lines(const std::vector<Polyline>& lines) {
@@ -53,7 +67,7 @@ void Overlay::set_lines(const std::vector<Polyline>& lines) {
     }
     m_data->SetPoints(points);
     m_data->SetLines(cells);
-    m_actor->SetVisibility(!lines.empty());
+    this->show(!lines.empty());
 }
 
 void Overlay::set_points(const Polyline& at) {
@@ -65,16 +79,17 @@ void Overlay::set_points(const Polyline& at) {
     }
     m_data->SetPoints(points);
     m_data->SetVerts(cells);
-    m_actor->SetVisibility(!at.empty());
+    this->show(!at.empty());
 }
 
 Pane::Pane(const std::array<double, 4>& viewport) {
     m_renderer->SetViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
     m_renderer->SetBackground(kBackground / 255.0, kBackground / 255.0, kBackground / 255.0);
-    m_mapper->SetInputData(m_image);
-    m_mapper->SetColorWindow(255);
-    m_mapper->SetColorLevel(127.5);
+    m_texture->SetInputData(m_image);
+    m_texture->InterpolateOff();
+    m_mapper->SetInputData(m_rectangle);
     m_actor->SetMapper(m_mapper);
+    m_actor->SetTexture(m_texture);
     m_renderer->AddActor2D(m_actor);
 }
 
@@ -123,8 +138,8 @@ void Pane::set_scale(double scale) {
 void Pane::fit() {
     m_fits = true;
     m_stale = true;
-    const double scale =
-        std::min(double(m_size.width) / m_picture.width, double(m_size.height) / m_picture.height);
+    const double scale = std::min(double(m_size.width - 2 * kMargin) / m_picture.width,
+                                  double(m_size.height - 2 * kMargin) / m_picture.height);
     this->set_scale(scale < 1 ? std::max(scale, kLeastScale)
                               : std::min<double>(std::floor(scale), kMostMagnified));
     m_left = -(m_size.width / m_magnified - m_drawn.width) / 2;
@@ -175,14 +190,32 @@ bool Pane::update() {
     m_pixels.rgb.assign(
         box.empty() ? 0 : 3 * static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()),
         0);
-    m_image->SetDimensions(m_size.width, m_size.height, 1);
-    m_image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-    std::fill_n(
-        static_cast<unsigned char*>(m_image->GetScalarPointer()),
-        std::size_t{3} * static_cast<std::size_t>(m_size.width) * static_cast<std::size_t>(m_size.height),
-        kBackground);
-    m_image->Modified();
+    this->make_image();
     return true;
+}
+
+/// An image as large as the renderer, pixel for pixel; four channels, which a card takes as they are.
+void Pane::make_image() {
+    m_image->SetDimensions(m_size.width, m_size.height, 1);
+    m_image->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
+    auto* to = static_cast<unsigned char*>(m_image->GetScalarPointer());
+    for (vtkIdType i = m_image->GetNumberOfPoints(); i > 0; --i, to += 4) {
+        std::fill_n(to, 3, kBackground);
+        to[3] = 255;
+    }
+    m_image->Modified();
+    vtkNew<vtkPoints> corners;
+    vtkNew<vtkFloatArray> places;
+    vtkNew<vtkCellArray> cells;
+    places->SetNumberOfComponents(2);
+    cells->InsertNextCell(4);
+    for (const auto& [right, up] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+        cells->InsertCellPoint(corners->InsertNextPoint(right * m_size.width, up * m_size.height, 0));
+        places->InsertNextTuple2(right, up);
+    }
+    m_rectangle->SetPoints(corners);
+    m_rectangle->SetPolys(cells);
+    m_rectangle->GetPointData()->SetTCoords(places);
 }
 
 void Pane::show(const Box& of) {
@@ -193,13 +226,9 @@ void Pane::show(const Box& of) {
                                              (box.x1 - m_left) * m_magnified, (box.y1 - m_top) * m_magnified},
                                             {0, 0, m_size.width, m_size.height});
     for (int y = pane.y0; y < pane.y1; ++y) {
-        unsigned char* to = image + 3 * (std::ptrdiff_t{m_size.height - 1 - y} * m_size.width + pane.x0);
+        unsigned char* to = image + 4 * (std::ptrdiff_t{m_size.height - 1 - y} * m_size.width + pane.x0);
         const int row = m_top + y / m_magnified;
-        if (m_magnified == 1) {
-            std::copy_n(m_pixels.at(m_left + pane.x0, row), 3 * pane.width(), to);
-            continue;
-        }
-        for (int x = pane.x0; x < pane.x1; ++x, to += 3)
+        for (int x = pane.x0; x < pane.x1; ++x, to += 4)
             std::copy_n(m_pixels.at(m_left + x / m_magnified, row), 3, to);
     }
     m_image->Modified();

@@ -8,11 +8,12 @@
 
 #include <vtkActor2D.h>
 #include <vtkImageData.h>
-#include <vtkImageMapper.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper2D.h>
 #include <vtkRenderer.h>
+#include <vtkTexture.h>
+#include <vtkTexturedActor2D.h>
 
 #include <array>
 #include <vector>
@@ -25,7 +26,7 @@ namespace anamorph_editor {
 using anamorph::Point;
 using Polyline = std::vector<Point<double>>;
 
-/// Lines or points of one colour, in pixels of a renderer from its lower left corner.
+/// Lines or points of one colour on a dark edge, in pixels of a renderer from its lower left corner.
 class Overlay {
   public:
     /// `size`: the width of lines and points, in pixels.
@@ -34,9 +35,11 @@ class Overlay {
     void set_points(const Polyline& points);
 
   private:
+    void show(bool visible);
+
     vtkNew<vtkPolyData> m_data;
     vtkNew<vtkPolyDataMapper2D> m_mapper;
-    vtkNew<vtkActor2D> m_actor;
+    vtkNew<vtkActor2D> m_edge, m_actor;
 };
 
 class Pane {
@@ -66,6 +69,7 @@ class Pane {
 
     /// Takes the renderer's size as it is now. Returns whether other pixels than before are to be drawn: pixels() are then new.
     bool update();
+    const anamorph::Size& picture() const { return m_picture; }
     anamorph::Size drawn_size() const { return m_drawn; }
     /// The drawn pixels that are seen.
     ScreenPixels& pixels() { return m_pixels; }
@@ -76,6 +80,7 @@ class Pane {
     Point<double> to_pane(const std::array<int, 2>& display);
     void set_scale(double scale);
     void keep_in_sight();
+    void make_image();
 
     anamorph::Size m_picture{1, 1}, m_drawn{1, 1}, m_size;
     double m_scale = 1;
@@ -87,8 +92,10 @@ class Pane {
     ScreenPixels m_pixels;
     vtkNew<vtkRenderer> m_renderer;
     vtkNew<vtkImageData> m_image;
-    vtkNew<vtkImageMapper> m_mapper;
-    vtkNew<vtkActor2D> m_actor;
+    vtkNew<vtkPolyData> m_rectangle;
+    vtkNew<vtkPolyDataMapper2D> m_mapper;
+    vtkNew<vtkTexture> m_texture;
+    vtkNew<vtkTexturedActor2D> m_actor;
 };
 
 }  // namespace anamorph_editor

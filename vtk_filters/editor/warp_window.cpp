@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <climits>
 #include <cmath>
-#include <filesystem>
+#include <set>
 
 #include "anamorph/mesh/mesh_file.h"
 #include "anamorph/operation/warp.h"
@@ -60,6 +61,28 @@ ControlMesh opened_mesh(const DrawnRecipe& recipe, const Size& cells) {
     const auto* mesh = std::get_if<ControlMesh>(&map.shape);
     if (!mesh) throw Error("mesh", printable(file), "the file holds points: must hold a mesh to be edited");
     return *mesh;
+}
+
+/// The same pixels in boxes that do not overlap: in each stretch of rows, all columns from the first to the last.
+std::vector<Box> apart(const std::vector<Box>& boxes) {
+    std::set<int> rows;
+    for (const Box& box : boxes) rows.insert({box.y0, box.y1});
+    std::vector<Box> out;
+    for (auto row = rows.begin(); row != rows.end() && std::next(row) != rows.end(); ++row) {
+        Box stretch{INT_MAX, *row, INT_MIN, *std::next(row)};
+        for (const Box& box : boxes)
+            if (box.y0 < stretch.y1 && box.y1 > stretch.y0) {
+                stretch.x0 = std::min(stretch.x0, box.x0);
+                stretch.x1 = std::max(stretch.x1, box.x1);
+            }
+        if (stretch.empty()) continue;
+        Box* last = out.empty() ? nullptr : &out.back();
+        if (last && last->y1 == stretch.y0 && last->x0 == stretch.x0 && last->x1 == stretch.x1)
+            last->y1 = stretch.y1;
+        else
+            out.push_back(stretch);
+    }
+    return out;
 }
 
 /// The cells' edges where the mesh lies.
@@ -155,7 +178,7 @@ std::vector<Box> WarpWindow::boxes_to_draw(const Mesh* before, const Mesh& now, 
                           m_recipe.values().text("scheme") != "residual";
     if (anew || !before || !by_cells || !(before->from() == now.from())) return {seen};
     std::vector<Box> boxes;
-    for (const Box& box : anamorph::changed_pixels(*before, now))
+    for (const Box& box : apart(anamorph::changed_pixels(*before, now)))
         if (const Box part = anamorph::intersection(box, seen); !part.empty()) boxes.push_back(part);
     return boxes;
 }
