@@ -86,6 +86,8 @@ DrawnRecipe::DrawnRecipe(const std::string& name, const std::string& edited)
 DrawnRecipe::DrawnRecipe(const anamorph::Recipe& recipe, const std::string& edited)
     : m_operation(recipe.operation), m_values(recipe.values), m_files(recipe.files), m_edited(edited) {
     refuse_keys(m_values);
+    if (!m_values.knows(edited))
+        throw Error("a recipe of ." + m_operation->name + " has no " + edited + ": must be one that has");
     const auto file = m_files.find(edited);
     if (file == m_files.end())
         throw Error(edited + " is not given: must be the name of the file that is edited");

@@ -4,6 +4,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <iostream>
 
 #include "warp_window.h"
@@ -19,6 +20,7 @@ struct Arguments {
 };
 
 void write_picture(vtkRenderWindow* window, const std::string& file) {
+    if (!std::ofstream(file, std::ios::app)) throw Error(anamorph::printable(file) + " cannot be written");
     vtkNew<vtkWindowToImageFilter> picture;
     picture->SetInput(window);
     picture->ReadFrontBufferOff();

@@ -112,8 +112,6 @@ struct WarpWindow::Opened {
           picture(anamorph::warp_target(recipe.values(), source)),
           title("anamorph-warp: " + name),
           file(save_as.empty() ? recipe.edited_file() : save_as) {
-        if (recipe.operation().name != "warp")
-            throw Error("\"" + printable(name) + "\": must be a recipe of .warp");
         if (recipe.values().given("direction"))
             mesh.direction = anamorph::read_warp_request(recipe.values(), source).direction.value();
     }

@@ -140,9 +140,6 @@ class WindowTest : public testing::Test {
                 float pixel[4];
                 expected.getpixel(x, y, pixel, 3);
                 for (std::size_t c = 0; c < 3; ++c)
-                    if (getenv("DBG") && std::abs(int(std::lround(255 * pixel[c])) -
-                                                   colors[static_cast<std::size_t>(at[1] * width + at[0])][c])>1) printf("%d %d: %g %d\n",x,y,255*pixel[c],colors[static_cast<std::size_t>(at[1] * width + at[0])][c]);
-                for (std::size_t c = 0; c < 3; ++c)
                     most =
                         std::max(most, std::abs(int(std::lround(255 * pixel[c])) -
                                                 colors[static_cast<std::size_t>(at[1] * width + at[0])][c]));
