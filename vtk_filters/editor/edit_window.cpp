@@ -136,17 +136,25 @@ bool EditWindow::is_second_click(const Display& at) {
 void EditWindow::press() {
     const Display at = this->mouse();
     m_held = this->pane_at(at);
-    Pane& pane = *m_panes[m_held];
-    if (!pane.has(at)) return;
-    const bool is_second = this->is_second_click(at);
-    m_pressed = m_last = at;
-    const Point<double> place = pane.to_picture(at);
     this->guarded([&] {
-        if (is_second) return this->double_click(m_held, place);
-        m_gesture =
-            this->pick(m_held, place, kHit * pane.pixel(), this->selecting()) ? Gesture::drag : Gesture::band;
+        if (m_panes[m_held]->has(at)) return this->press_in_pane(at);
+        if (this->press_below({double(at[0]), double(at[1])})) m_gesture = Gesture::below;
     });
     this->render();
+}
+
+void EditWindow::press_in_pane(const Display& at) {
+    const bool is_second = this->is_second_click(at);
+    m_pressed = m_last = at;
+    Pane& pane = *m_panes[m_held];
+    const Point<double> place = pane.to_picture(at);
+    if (this->draws_lines())
+        m_gesture = Gesture::line;
+    else if (is_second)
+        this->double_click(m_held, place);
+    else
+        m_gesture =
+            this->pick(m_held, place, kHit * pane.pixel(), this->selecting()) ? Gesture::drag : Gesture::band;
 }
 
 void EditWindow::move() {
@@ -157,6 +165,7 @@ void EditWindow::move() {
     m_last = at;
     if (m_gesture == Gesture::drag)
         this->guarded([&] { this->drag(m_held, pane.to_picture(at) - pane.to_picture(m_pressed)); });
+    if (m_gesture == Gesture::below) this->guarded([&] { this->move_below({double(at[0]), double(at[1])}); });
     this->show_band();
     this->render();
 }
@@ -168,7 +177,7 @@ void EditWindow::release() {
     Pane& pane = *m_panes[m_held];
     this->guarded([&] {
         if (gesture == Gesture::drag) this->end_drag(true);
-        if (gesture != Gesture::band) return;
+        if (gesture != Gesture::band && gesture != Gesture::line) return;
         const Point<double> a = pane.to_picture(m_pressed), b = pane.to_picture(this->mouse());
         this->select_in(m_held,
                         {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)},
@@ -181,10 +190,9 @@ void EditWindow::release() {
 void EditWindow::show_band() {
     std::vector<Polyline> lines;
     Pane& pane = *m_panes[m_held];
-    if (m_gesture == Gesture::band) {
-        const Point<double> a = pane.to_picture(m_pressed), b = pane.to_picture(m_last);
-        lines = pane.to_renderer({{a, {b.x, a.y}, b, {a.x, b.y}, a}});
-    }
+    const Point<double> a = pane.to_picture(m_pressed), b = pane.to_picture(m_last);
+    if (m_gesture == Gesture::band) lines = pane.to_renderer({{a, {b.x, a.y}, b, {a.x, b.y}, a}});
+    if (m_gesture == Gesture::line) lines = pane.to_renderer({{a, b}});
     m_bands[m_held]->set_lines(lines);
 }
 

@@ -87,6 +87,12 @@ class EditWindow {
     /// A key that means nothing to all windows. `at`: where the pointer is.
     virtual void key(const std::string& name, std::size_t pane, const Point<double>& at) = 0;
     virtual void timer() {}
+    /// Does the left button draw lines, in place of selecting?
+    virtual bool draws_lines() const { return false; }
+    virtual void draw_line(std::size_t, const Point<double>&, const Point<double>&) {}
+    /// The left button below the panes, at pixels from the lower left corner. Returns whether there is something to hold.
+    virtual bool press_below(const Point<double>&) { return false; }
+    virtual void move_below(const Point<double>&) {}
 
     vtkRenderer* lower() { return m_lower; }
     /// Runs what may fail; an error is kept for the line.
@@ -110,7 +116,7 @@ class EditWindow {
     void forget_drawn() { m_forgotten = true; }
 
   private:
-    enum class Gesture { none, drag, band, pan };
+    enum class Gesture { none, drag, band, line, below, pan };
     using Display = std::array<int, 2>;
 
     static void handle(vtkObject* caller, unsigned long event, void* window, void*);
@@ -128,6 +134,7 @@ class EditWindow {
     std::size_t pane_at(const Display& at);
     Display mouse() const;
     Selecting selecting() const;
+    void press_in_pane(const Display& at);
     bool is_second_click(const Display& at);
 
     std::string m_file, m_saved, m_status, m_error;
