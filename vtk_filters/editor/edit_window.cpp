@@ -179,6 +179,7 @@ void EditWindow::release() {
         if (gesture == Gesture::drag) this->end_drag(true);
         if (gesture != Gesture::band && gesture != Gesture::line) return;
         const Point<double> a = pane.to_picture(m_pressed), b = pane.to_picture(this->mouse());
+        if (gesture == Gesture::line) return this->draw_line(m_held, a, b);
         this->select_in(m_held,
                         {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)},
                         this->selecting());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames a second of anamorph-warp while points are dragged: warp_frames RECIPE [FRAMES]. Each frame is an event of the mouse, and ends
+// Frames a second of anamorph-warp while points are dragged: warp_frames RECIPE [FRAMES]. Of a .morph, the first point of its first line. Each frame is an event of the mouse, and ends
 // when the window shows what it did. Twice: with OpenGL, and without, which leaves all that is not the graphics card's.
+#include <morph_window.h>
 #include <sys/resource.h>
 #include <vtkCommand.h>
 #include <warp_window.h>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 namespace {
 
@@ -61,15 +63,15 @@ anamorph::Point<double> middle_point(anamorph_editor::WarpWindow& window) {
     return at;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    if (argc < 2) return 1;
-    anamorph_editor::WarpWindow window(argv[1]);
+void prepare(EditWindow& window) {
     window.window()->SetSize(1600, 860);
     window.window()->Render();
     window.interactor()->Initialize();
-    const int frames = argc > 2 ? std::atoi(argv[2]) : 200;
+}
+
+void measure_warp(const char* recipe, int frames) {
+    anamorph_editor::WarpWindow window(recipe);
+    prepare(window);
     const auto at = middle_point(window);
     for (const bool with_opengl : {false, true}) {
         measure("one point", window, at.x, at.y, frames, with_opengl);
@@ -77,5 +79,23 @@ int main(int argc, char** argv) {
         measure("all points", window, at.x, at.y, frames, with_opengl);
         event(window, vtkCommand::KeyPressEvent, at.x, at.y, "Escape");
     }
-    return window.error().empty() ? 0 : 1;
+}
+
+void measure_morph(const char* recipe, int frames) {
+    anamorph_editor::MorphWindow window(recipe);
+    prepare(window);
+    anamorph_editor::Pane& pane = window.pane(0);
+    const auto at = pane.to_renderer(window.editor().at({0, 0, 0}));
+    const int* corner = pane.renderer()->GetOrigin();
+    for (const bool with_opengl : {false, true})
+        measure("one point", window, at.x + corner[0], at.y + corner[1], frames, with_opengl);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) return 1;
+    const int frames = argc > 2 ? std::atoi(argv[2]) : 200;
+    std::string(argv[1]).find(".morph") != std::string::npos ? measure_morph(argv[1], frames)
+                                                             : measure_warp(argv[1], frames);
 }
