@@ -18,7 +18,6 @@ using anamorph::ControlMesh;
 using anamorph::Direction;
 using anamorph::Error;
 using anamorph::Mesh;
-using anamorph::MeshCell;
 using anamorph::MeshEditor;
 using anamorph::printable;
 using anamorph::Size;
@@ -88,9 +87,7 @@ std::vector<Box> apart(const std::vector<Box>& boxes) {
 /// The cells' edges where the mesh lies.
 std::vector<Polyline> lattice_of(const Mesh& mesh) {
     std::vector<Polyline> lines;
-    mesh.each_cell(0, 0, mesh.from().width, mesh.from().height, [&](const MeshCell& c) {
-        lines.push_back({{c.x0, c.y1}, {c.x0, c.y0}, {c.x1, c.y0}, {c.x1, c.y1}, {c.x0, c.y1}});
-    });
+    for (anamorph::MeshEdge& edge : anamorph::mesh_edges(mesh, false)) lines.push_back(std::move(edge.line));
     return lines;
 }
 

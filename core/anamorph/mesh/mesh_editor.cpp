@@ -2,7 +2,6 @@
 #include "anamorph/mesh/mesh_editor.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <map>
 #include <numeric>
@@ -36,20 +35,14 @@ bool is_free(const Mesh& map, int level, int column, int row) {
     return true;
 }
 
-/// The points along a cell's edge: 0 the upper, 1 the right, 2 the lower, 3 the left one; clockwise.
-Point<double> on_edge(const Mesh& map, const Patch& patch, int edge, double along) {
-    const double s[] = {along, 1, 1 - along, 0}, t[] = {0, along, 1, 1 - along};
-    return map.inside(patch, s[edge], t[edge]);
-}
-
 /// Does the outline of a cell, as edges() draws it, go around a position? By how often a line from there to the right crosses it.
 bool shows_at(const Mesh& map, const MeshCell& cell, const Point<double>& at) {
     const Patch patch = map.patch(cell);
     bool inside = false;
     Point<double> last = map.inside(patch, 0.0, 0.0);
     for (int edge = 0; edge < 4; ++edge)
-        for (int i = 1; i <= MeshEditor::kEdgeSteps; ++i) {
-            const Point<double> next = on_edge(map, patch, edge, double(i) / MeshEditor::kEdgeSteps);
+        for (int i = 1; i <= kMeshEdgeSteps; ++i) {
+            const Point<double> next = on_mesh_edge(map, patch, edge, double(i) / kMeshEdgeSteps);
             if ((last.y > at.y) != (next.y > at.y) &&
                 at.x < last.x + (next.x - last.x) * ((at.y - last.y) / (next.y - last.y)))
                 inside = !inside;
@@ -110,21 +103,7 @@ void MeshEditor::find_points() {
 
 std::vector<std::vector<Point<double>>> MeshEditor::edges() const {
     std::vector<std::vector<Point<double>>> edges;
-    std::set<std::array<double, 4>> drawn;
-    each_cell_of_all(m_map, [&](const MeshCell& cell) {
-        const Patch patch = m_map.patch(cell);
-        const std::array<double, 4> ends[] = {{cell.x0, cell.y0, cell.x1, cell.y0},
-                                              {cell.x1, cell.y0, cell.x1, cell.y1},
-                                              {cell.x0, cell.y1, cell.x1, cell.y1},
-                                              {cell.x0, cell.y0, cell.x0, cell.y1}};
-        for (int edge = 0; edge < 4; ++edge) {
-            if (!drawn.insert(ends[edge]).second) continue;
-            std::vector<Point<double>> line;
-            for (int i = 0; i <= kEdgeSteps; ++i)
-                line.push_back(on_edge(m_map, patch, edge, double(i) / kEdgeSteps));
-            edges.push_back(std::move(line));
-        }
-    });
+    for (MeshEdge& edge : mesh_edges(m_map, true)) edges.push_back(std::move(edge.line));
     return edges;
 }
 

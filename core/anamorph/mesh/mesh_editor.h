@@ -16,6 +16,7 @@
 #include "anamorph/geometry/bounds_tree.h"
 #include "anamorph/geometry/box.h"
 #include "anamorph/mesh/mesh.h"
+#include "anamorph/mesh/mesh_edges.h"
 
 namespace anamorph {
 
@@ -46,7 +47,7 @@ class MeshEditor {
     const std::vector<ControlPoint>& points() const { return m_points; }
     /// The edges of all cells, each a line of kEdgeSteps steps along the map.
     std::vector<std::vector<Point<double>>> edges() const;
-    static constexpr int kEdgeSteps = 8;
+    static constexpr int kEdgeSteps = kMeshEdgeSteps;
 
     const std::set<Place>& selected() const { return m_state.selected; }
     /// The control point nearest to a position, no farther than `within`, that can be dragged.
