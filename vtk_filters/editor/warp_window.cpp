@@ -169,8 +169,10 @@ void WarpWindow::draw_source() {
 /// All that is seen, or what the mesh changed of it.
 std::vector<Box> WarpWindow::boxes_to_draw(const Mesh* before, const Mesh& now, bool anew) {
     const Box seen = this->pane(1).pixels().box;
-    const bool by_cells = m_pulls && m_recipe.values().text("scheme") != "hardware" &&
-                          m_recipe.values().text("scheme") != "residual";
+    const anamorph::ParameterValues& values = m_recipe.values();
+    const std::string& scheme = values.text("scheme");
+    const bool by_cells =
+        m_pulls && scheme != "hardware" && scheme != "residual" && values.text("output") != "mesh";
     if (anew || !before || !by_cells || !(before->from() == now.from())) return {seen};
     std::vector<Box> boxes;
     for (const Box& box : apart(anamorph::changed_pixels(*before, now)))

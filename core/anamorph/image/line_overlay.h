@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "anamorph/chart/chart.h"
 #include "anamorph/image/picture.h"
@@ -12,8 +13,9 @@ namespace anamorph {
 /// The colour of the i-th kind of lines: of a shape, or of a level. There are three, over and over.
 const std::array<float, 3>& overlay_color(int i);
 
-/// Draws the line between two points of the picture, which differ, one pixel and a half wide; channels above the third become 1 there.
-void draw_line_over(const Point<double>& from, const Point<double>& to, const std::array<float, 3>& color,
+/// Draws a chain of lines from point to point of the picture, one pixel and a half wide; channels above the third become 1 there. Points that
+/// follow each other may be the same.
+void draw_line_over(const std::vector<Point<double>>& line, const std::array<float, 3>& color,
                     const PixelRows& pixels);
 
 }  // namespace anamorph

@@ -65,11 +65,7 @@ std::function<void(const PixelRows&)> mesh_overlay(const WarpMap& map, const Siz
                " are drawn");
     const auto edges = std::make_shared<const std::vector<MeshEdge>>(mesh_edges(mesh, !pulls));
     return [edges](const PixelRows& pixels) {
-        for (const MeshEdge& edge : *edges)
-            for (std::size_t i = 0; i + 1 < edge.line.size(); ++i) {
-                const Point<double>&p = edge.line[i], &q = edge.line[i + 1];
-                if (p.x != q.x || p.y != q.y) draw_line_over(p, q, overlay_color(edge.level), pixels);
-            }
+        for (const MeshEdge& edge : *edges) draw_line_over(edge.line, overlay_color(edge.level), pixels);
     };
 }
 

@@ -13,7 +13,7 @@ void draw_features(const Features& features, const FeatureMap& map, const PixelR
             const double sx = target.width / (frame.width > 0 ? frame.width : map.picture(k).width);
             const double sy = target.height / (frame.height > 0 ? frame.height : map.picture(k).height);
             const Line& l = features.line(i, k);
-            draw_line_over({l.p.x * sx, l.p.y * sy}, {l.q.x * sx, l.q.y * sy}, overlay_color(k), pixels);
+            draw_line_over({{l.p.x * sx, l.p.y * sy}, {l.q.x * sx, l.q.y * sy}}, overlay_color(k), pixels);
         }
 }
 
