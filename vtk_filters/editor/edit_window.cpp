@@ -148,13 +148,13 @@ void EditWindow::press_in_pane(const Display& at) {
     m_pressed = m_last = at;
     Pane& pane = *m_panes[m_held];
     const Point<double> place = pane.to_picture(at);
-    if (this->draws_lines())
+    if (this->draws_lines()) {
         m_gesture = Gesture::line;
-    else if (is_second)
-        this->double_click(m_held, place);
-    else
-        m_gesture =
-            this->pick(m_held, place, kHit * pane.pixel(), this->selecting()) ? Gesture::drag : Gesture::band;
+        return;
+    }
+    if (is_second && this->double_click(m_held, place)) return;
+    const bool is_picked = this->pick(m_held, place, kHit * pane.pixel(), this->selecting());
+    m_gesture = is_picked ? Gesture::drag : Gesture::band;
 }
 
 void EditWindow::move() {

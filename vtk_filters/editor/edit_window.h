@@ -81,7 +81,8 @@ class EditWindow {
     virtual void select_none() = 0;
     virtual void drag(std::size_t pane, const Point<double>& by) = 0;
     virtual void end_drag(bool keep) = 0;
-    virtual void double_click(std::size_t pane, const Point<double>& at) = 0;
+    /// What a double click does. False where it is nothing, and counts as a click.
+    virtual bool double_click(std::size_t, const Point<double>&) { return false; }
     virtual bool undo() = 0;
     virtual bool redo() = 0;
     /// A key that means nothing to all windows. `at`: where the pointer is.

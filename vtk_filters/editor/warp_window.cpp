@@ -254,9 +254,10 @@ void WarpWindow::drag(std::size_t, const Point<double>& by) {
     m_editor.drag(by);
 }
 
-void WarpWindow::double_click(std::size_t pane, const Point<double>& at) {
+bool WarpWindow::double_click(std::size_t pane, const Point<double>& at) {
     const Point<double> place = pane == this->edited_pane() ? at : m_editor.map().at(at.x, at.y);
     if (!m_editor.cut_at(place)) throw Error("there is no cell to be cut here");
+    return true;
 }
 
 void WarpWindow::key(const std::string& name, std::size_t pane, const Point<double>& at) {

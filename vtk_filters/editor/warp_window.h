@@ -41,7 +41,7 @@ class WarpWindow final : public EditWindow {
     void select_none() override { m_editor.select_none(); }
     void drag(std::size_t pane, const Point<double>& by) override;
     void end_drag(bool keep) override { m_editor.end_drag(keep); }
-    void double_click(std::size_t pane, const Point<double>& at) override;
+    bool double_click(std::size_t pane, const Point<double>& at) override;
     bool undo() override { return m_editor.undo(); }
     bool redo() override { return m_editor.redo(); }
     void key(const std::string& name, std::size_t pane, const Point<double>& at) override;
