@@ -11,7 +11,7 @@ endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir})
-# What the example and anamorph-view take beyond that. It is found here, and not in their folders alone: the packages that VTK
+# What the example, anamorph-view and anamorph-warp take beyond that. It is found here, and not in their folders alone: the packages that VTK
 # finds for it (MPI) have to be known where VTK's own targets are, or nothing is generated.
 if(ANAMORPH_TOOLKIT STREQUAL "VTK" AND (ANAMORPH_TESTS OR ANAMORPH_VIEWER))
     find_package(VTK 9.1 REQUIRED COMPONENTS InteractionStyle RenderingFreeType)

@@ -317,5 +317,77 @@ TEST(MeshWarp, RefusesWhatDoesNotFit) {
     EXPECT_THROW(warp.draw(nullptr, {0, 0, 10, 10}, three.view()), Error);
 }
 
+/// A picture of one grey, with the mesh over it.
+Picture with_mesh(const ControlMesh& mesh, const Size& size, const Box& box) {
+    Picture grey(size.width, size.height, 3), drawn(box.width(), box.height(), 3);
+    std::fill(grey.values.begin(), grey.values.end(), 0.5f);
+    MeshWarpOptions options;
+    options.draws_mesh = true;
+    options.wrap = Wrap::clamp;
+    const MemorySource source(grey.source());
+    EXPECT_TRUE(warped_picture({"mesh", mesh}, size, size, options).draw(&source, box, drawn.view()));
+    return drawn;
+}
+
+TEST(MeshWarp, DrawsTheMeshOverThePicture) {
+    const Size size{80, 60};
+    const Box whole{0, 0, 80, 60};
+    // By the definition: one pixel and a half wide, so three quarters of the pixels on either side of a line between pixels.
+    const float first[] = {1, 0.3f, 0.1f}, second[] = {0.1f, 0.55f, 1};
+    const auto expect_line = [&](const Picture& picture, int x, int y, const float* color) {
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(picture.at(x, y, c), 0.5 + 0.75 * (color[c] - 0.5), 1e-6) << x << "," << y;
+    };
+    const auto expect_none = [&](const Picture& picture, int x, int y) {
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(picture.at(x, y, c), 0.5f) << x << "," << y;
+    };
+    ControlMesh mesh = test::identity_mesh(size, 4, 3);
+    mesh.levels.push_back({{{1, 1}}, {}});
+    // Where vertices go moves no line of a mesh that pulls.
+    mesh.vertices[6] = {31, 17};
+    const Picture pulled = with_mesh(mesh, size, whole);
+    for (const int x : {19, 20, 39, 40, 59, 60}) expect_line(pulled, x, 9, first);
+    for (const int y : {19, 20, 39, 40}) expect_line(pulled, 50, y, first);
+    for (const int x : {29, 30}) expect_line(pulled, x, 25, second);
+    expect_line(pulled, 25, 30, second);
+    for (const int x : {10, 18, 21, 30, 50}) expect_none(pulled, x, 10);
+    expect_none(pulled, 25, 25);
+    // In parts the same.
+    const Box part{13, 11, 57, 48};
+    const Picture cut = with_mesh(mesh, size, part);
+    for (int y = part.y0; y < part.y1; ++y)
+        for (int x = part.x0; x < part.x1; ++x)
+            for (int c = 0; c < 3; ++c) ASSERT_EQ(cut.at(x - part.x0, y - part.y0, c), pulled.at(x, y, c));
+    // Of one that pushes edges go where the vertices go: here by 5 to the right and 3 down.
+    ControlMesh pushed = test::identity_mesh(size, 4, 3);
+    pushed.direction = Direction::push;
+    for (Point<double>& v : pushed.vertices) v = {v.x + 5, v.y + 3};
+    const Picture moved = with_mesh(pushed, size, whole);
+    for (const int x : {24, 25, 44, 45})
+        for (const int y : {8, 13, 14, 15, 16}) expect_line(moved, x, y, first);
+    expect_line(moved, 50, 42, first);
+    expect_none(moved, 20, 13);
+}
+
+TEST(MeshWarp, SaysWhatHasNoMeshToDraw) {
+    const auto refusal = [](const WarpMap& map) -> std::string {
+        MeshWarpOptions options;
+        options.draws_mesh = true;
+        try {
+            warped_picture(map, {400, 300}, {400, 300}, options);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(refusal({"p.csv", ControlPoints{Units::pixels, {{0, 0, 0, 0}, {9, 0, 9, 1}, {0, 9, 1, 9}}}}),
+                testing::HasSubstr("output=mesh: must be another of p.csv, which has points and no mesh"));
+    EXPECT_THAT(refusal({"m.json", test::identity_mesh({400, 300}, 300, 220)}),
+                testing::HasSubstr("which has 66000 cells: at most 65536 are drawn"));
+    EXPECT_EQ(refusal({"m.json", test::identity_mesh({400, 300}, 256, 256)}), "");
+    EXPECT_THAT(refusal(mesh_from_stmap(std::vector<float>{0, 0, 1, 0, 0, 1, 1, 1}, 2, 2, "map.exr")),
+                testing::HasSubstr("map.exr, which is an ST-map taken pixel for pixel"));
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -72,6 +72,9 @@ TEST(WarpRequest, ReadsItsValues) {
     EXPECT_EQ(other.direction, Direction::push);
     EXPECT_EQ(other.options.amount, -0.5);
     EXPECT_EQ(warp({{"size", "1"}}, {1000, 1}).target.height, 1);
+    EXPECT_FALSE(plain.options.draws_mesh);
+    EXPECT_TRUE(warp({{"output", "mesh"}}).options.draws_mesh);
+    EXPECT_EQ(warp({{"output", "mesh"}}).options.output, Output::color);
 }
 
 TEST(WarpRequest, PixelsAsFractions) {

@@ -72,6 +72,8 @@ LINES = [
     Line(XVFB + r"/usr/bin/python3 tests/bench/ellipsoid_mapper\.py", ("vtk",), more=" --count 50 --size 64 --frames 1"),
     Line(r"build/vtk/bin/anamorph-view .* --picture ", ("vtk",)),
     Line(r"build/vtk/bin/anamorph-view (?!.*--picture)", ("vtk",), more=" --picture seen.png"),
+    Line(r"build/vtk/bin/anamorph-warp .* --picture ", ("vtk",)),
+    Line(r"build/vtk/bin/anamorph-warp (?!.*--picture)", ("vtk",), more=" --picture seen.png"),
     # ParaView.
     Line(r"export PV_PLUGIN_PATH=", ("paraview",)),
     Line(r"paraview$", (), why="its window waits for a user; test_gui.py opens it, and closes it again"),

@@ -58,6 +58,9 @@ CONFIGURED = """
 if grep -A 5 "not used by the project" configured.txt; then exit 1; fi
 """
 
+BULGE = """{"columns": 2, "rows": 2, "units": "fractions",
+"vertices": [[0, 0], [0.5, 0], [1, 0], [0, 0.5], [0.6, 0.45], [1, 0.5], [0, 1], [0.5, 1], [1, 1]]}"""
+
 
 def link_tree(folder, preset):
     """A folder that looks like the tree with its build, where nothing that is written gets into either."""
@@ -117,6 +120,9 @@ def run_vtk(folder):
     """Lines of the shell, and then Python with the paths that these have set."""
     shell('/usr/bin/python3 examples/make_panorama.py panorama.exr 256 && oiiotool panorama.exr --ch R,G,B -d uint8 -o photo.jpg',
           folder)
+    shell("oiiotool photo.jpg --flop -o mirrored.jpg", folder)
+    (folder / "bulge.json").write_text(BULGE)
+    (folder / "faces.csv").write_text("100,60,140,70,110,64,150,66\n60,90,66,40,50,88,58,42\n")
     # Paths first: an example of an earlier section points to them.
     lines = sorted(blocks.lines_of("vtk"), key=lambda line: not line.startswith(("tests/unpack_vtk.sh", "export ")))
     assert len(lines) > 8, lines

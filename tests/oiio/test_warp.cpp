@@ -476,6 +476,7 @@ TEST_F(Warp, WhatFailsSaysWhyInALine) {
         {"city.exr.warp?mesh=grid.json&size=0", "size=0"},
         {"city.exr.warp?mesh=grid.json&yaw=3", "yaw=3: there is no such parameter"},
         {"city.exr.warp?mesh=grid.json&output=lines", "output=lines"},
+        {"city.exr.warp?mesh=grid.json&output=mesh&scheme=hardware", "output=mesh: must be another"},
         {"missing.exr.warp?mesh=grid.json", "missing.exr"},
         {"self.warp", "read each other"},
     };

@@ -15,21 +15,7 @@ constexpr double kExposureStep = 0.5, kMostExposure = 32;
 /// Radii of the outer circle.
 constexpr double kMove = 0.05;
 
-double linear_of(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-double encoded_of(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 }  // namespace
-
-unsigned char shown(float value, bool hdr, double gain) {
-    double v = double{value};
-    if (hdr || gain != 1) v = encoded_of((hdr ? v : linear_of(v)) * gain);
-    // Written so that what is no number is black.
-    return static_cast<unsigned char>(std::lround(255 * std::min(v > 0 ? v : 0, 1.0)));
-}
 
 Drawing drawing_from_name(const std::string& name) {
     if (name == "picture") return Drawing::picture;

@@ -28,13 +28,10 @@
 
 #include "anamorph/projector/tour_file.h"
 #include "card_view.h"
+#include "shown.h"
 #include "viewed_panorama.h"
 
 namespace anamorph_viewer {
-
-/// A value as the screen shows it: `gain` times as bright, in sRGB's curve, 0 to 255. Values of sources that are not HDR are
-/// in that curve already, and stay as they are where the gain is 1.
-unsigned char shown(float value, bool hdr, double gain);
 
 /// How a view is drawn.
 enum class Drawing {

@@ -296,6 +296,7 @@ Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amo
     int before_x = 0, before_y = 0;
     m_x = lines_of(mesh.x_lines, mesh.columns, from.width, mesh.units, name, "x", before_x);
     m_y = lines_of(mesh.y_lines, mesh.rows, from.height, mesh.units, name, "y", before_y);
+    m_before = {before_x, before_y};
     const bool halves = !mesh.levels.empty();
     if (exact_lines(m_x, mesh.x_lines, mesh.columns, from.width, mesh.units, before_x, halves) &&
         exact_lines(m_y, mesh.y_lines, mesh.rows, from.height, mesh.units, before_y, halves))

@@ -77,6 +77,12 @@ class Mesh {
     /// The lines of level 0, from edge to edge of the image.
     const std::vector<double>& x_lines() const { return m_x; }
     const std::vector<double>& y_lines() const { return m_y; }
+    /// The lines of level 0 that stand before the first given one, across and down: 1 where that lies inside the image, else 0.
+    const Size& lines_before() const { return m_before; }
+    /// The place of a vertex of the lattice of a level, whose numbers count the lines before too.
+    Point<double> lattice_place(int level, int column, int row) const {
+        return {line(m_x, level, column), line(m_y, level, row)};
+    }
     /// Pixels of "to" per pixel of "from" of the identity.
     const Point<double>& scale() const { return m_scale; }
 
@@ -185,7 +191,7 @@ class Mesh {
         for (int k = 0; k < 4; ++k) each_part(cell_of(child + k), body);
     }
 
-    Size m_from, m_to;
+    Size m_from, m_to, m_before;
     Point<double> m_scale;
     std::vector<double> m_x, m_y;
     double m_line_rounding = 4 * 0x1p-53;  ///< relative rounding of a line; 0 where all are exact

@@ -7,6 +7,7 @@
 
 #include "anamorph/mesh/sample_rows.h"
 #include "anamorph/parameter/json_file.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -185,6 +186,88 @@ WarpMap parse_mesh_json(std::string_view text, std::string_view name) {
     if (!json.is_object()) fail(name, "", "must be an object with \"vertices\" or \"points\"");
     if (top.has("points")) return {excerpt(name), control_points(top)};
     return {excerpt(name), control_mesh(top)};
+}
+
+namespace {
+
+/// Writes numbers of a mesh as JSON has them.
+class MeshWriter {
+  public:
+    const std::string& text() const { return m_text; }
+    MeshWriter& operator<<(const char* text) {
+        m_text += text;
+        return *this;
+    }
+    MeshWriter& operator<<(int number) {
+        m_text += std::to_string(number);
+        return *this;
+    }
+    MeshWriter& operator<<(double number) {
+        if (!std::isfinite(number)) throw Error("mesh: " + brief(number) + ": must be a finite number");
+        m_text += shortest(number);
+        return *this;
+    }
+    MeshWriter& operator<<(const Point<double>& p) { return *this << p.x << ", " << p.y; }
+    /// A list, `across` entries a line.
+    template <class List, class Entry>
+    void list(const List& list, std::size_t across, const char* indent, const Entry& entry) {
+        *this << "[";
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            *this << (i == 0 ? "" : ",");
+            if (i % across == 0 && list.size() > across)
+                *this << "\n" << indent;
+            else if (i > 0)
+                *this << " ";
+            entry(list[i]);
+        }
+        *this << "]";
+    }
+
+  private:
+    std::string m_text;
+};
+
+void write_lines(MeshWriter& to, const char* key, const std::vector<double>& lines) {
+    if (lines.empty()) return;
+    to << ",\n  \"" << key << "\": ";
+    to.list(lines, 16, "    ", [&](double line) { to << line; });
+}
+
+void write_level(MeshWriter& to, const ControlMesh::Level& level) {
+    to << "\n    {\"cells\": ";
+    to.list(level.cells, 16, "      ",
+            [&](const ControlMesh::Cell& c) { to << "[" << c.column << ", " << c.row << "]"; });
+    if (!level.vertices.empty()) {
+        to << ",\n     \"vertices\": ";
+        to.list(level.vertices, 4, "      ", [&](const ControlMesh::Vertex& v) {
+            to << "[" << v.column << ", " << v.row << ", " << v.at << "]";
+        });
+    }
+    to << "}";
+}
+
+}  // namespace
+
+std::string mesh_json(const ControlMesh& mesh) {
+    if (mesh.samples) throw Error("mesh: an ST-map has no JSON: must be a mesh");
+    MeshWriter to;
+    to << "{\n  \"direction\": " << (mesh.direction == Direction::push ? "\"push\"" : "\"pull\"")
+       << ", \"units\": " << (mesh.units == Units::fractions ? "\"fractions\"" : "\"pixels\"")
+       << ",\n  \"columns\": " << mesh.columns << ", \"rows\": " << mesh.rows << ",\n  \"vertices\": ";
+    to.list(mesh.vertices, static_cast<std::size_t>(mesh.columns) + 1, "    ",
+            [&](const Point<double>& vertex) { to << "[" << vertex << "]"; });
+    write_lines(to, "x", mesh.x_lines);
+    write_lines(to, "y", mesh.y_lines);
+    if (!mesh.levels.empty()) {
+        to << ",\n  \"levels\": [";
+        for (std::size_t k = 0; k < mesh.levels.size(); ++k) {
+            to << (k > 0 ? "," : "");
+            write_level(to, mesh.levels[k]);
+        }
+        to << "]";
+    }
+    to << "\n}\n";
+    return to.text();
 }
 
 WarpMap parse_points_csv(std::string_view text, std::string_view name) {

@@ -28,6 +28,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,9 @@ WarpMap parse_mesh_json(std::string_view text, std::string_view name);
 WarpMap parse_points_csv(std::string_view text, std::string_view name);
 /// Reads a warp in the format that the ending of the name says: CSV for .csv, else JSON.
 WarpMap parse_warp_file(std::string_view text, std::string_view name);
+/// Writes a mesh as JSON that parse_mesh_json() reads: the same numbers, to the bit. Throws Error where it is an ST-map's, which
+/// is an image and no text, or has a number that is not finite.
+std::string mesh_json(const ControlMesh& mesh);
 
 /// The most pixels of an ST-map that may be vertices.
 inline constexpr int kMostStMapVertices = 1 << 28;

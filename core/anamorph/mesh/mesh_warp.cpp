@@ -4,8 +4,10 @@
 #include <atomic>
 #include <memory>
 
+#include "anamorph/image/line_overlay.h"
 #include "anamorph/image/strips.h"
 #include "anamorph/mesh/inverse.h"
+#include "anamorph/mesh/mesh_edges.h"
 #include "anamorph/mesh/mesh_scattered.h"
 #include "anamorph/mesh/stmap_plan.h"
 
@@ -45,6 +47,28 @@ double folded_fraction(const WarpPlan& plan, const ParallelFor& parallel_for) {
     return static_cast<double>(folded) / (double(whole.width()) * whole.height());
 }
 
+/// The function that draws a mesh over its picture: where it lies, or, where it pushes, where its edges go.
+std::function<void(const PixelRows&)> mesh_overlay(const WarpMap& map, const Size& source, const Size& target,
+                                                   double amount) {
+    const auto refuse = [&](const std::string& why) {
+        throw Error("output", "mesh", "must be another of " + map.name + ", which " + why);
+    };
+    const auto* shape = std::get_if<ControlMesh>(&map.shape);
+    if (!shape) refuse("has points and no mesh");
+    if (shape->samples) refuse("is an ST-map taken pixel for pixel");
+    const bool pulls = shape->direction == Direction::pull;
+    const Mesh mesh(*shape, pulls ? target : source, pulls ? source : target, amount, map.name);
+    std::int64_t cells = 0;
+    mesh.each_cell(0, 0, mesh.from().width, mesh.from().height, [&](const MeshCell&) { ++cells; });
+    if (cells > kMostDrawnCells)
+        refuse("has " + std::to_string(cells) + " cells: at most " + std::to_string(kMostDrawnCells) +
+               " are drawn");
+    const auto edges = std::make_shared<const std::vector<MeshEdge>>(mesh_edges(mesh, !pulls));
+    return [edges](const PixelRows& pixels) {
+        for (const MeshEdge& edge : *edges) draw_line_over(edge.line, overlay_color(edge.level), pixels);
+    };
+}
+
 }  // namespace
 
 Picture warped_picture(const WarpMap& map, const Size& source, const Size& target,
@@ -56,6 +80,7 @@ Picture warped_picture(const WarpMap& map, const Size& source, const Size& targe
     Picture picture = picture_through(plan, Border(flat, options.wrap), options.filter, options.output);
     picture.adds_alpha = options.adds_alpha;
     picture.data = options.data;
+    if (options.draws_mesh) picture.overlay = mesh_overlay(map, source, target, options.amount);
     if (options.folds) picture.value = [plan](double x, double y) { return plan->folds(x, y); };
     picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
         return {{"anamorph:folded_fraction", folded_fraction(*plan, parallel_for)}};

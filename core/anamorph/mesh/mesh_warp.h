@@ -22,10 +22,15 @@ struct MeshWarpOptions {
     /// the source turned over (its Jacobian's determinant has the other sign than that of most of the mesh),
     /// and for a mesh that pushes the number of further source points that land on the pixel.
     bool folds = false;
+    /// Draws over colour the edges of the mesh's cells, each level in a colour of its own.
+    bool draws_mesh = false;
     /// Has colour a channel more, of how much of a pixel the source covers (Picture::adds_alpha)?
     bool adds_alpha = false;
     double amount = 1;  ///< blends vertices from the identity (0) to the warp (1) and beyond; finite
 };
+
+/// The most cells of a mesh that are drawn over its picture.
+inline constexpr int kMostDrawnCells = 1 << 16;
 
 /// A picture warped. Its one source has the size `source` at level 0; the bits of a pixel depend on nothing but the map, the options,
 /// the sizes and the source. It says anamorph:folded_fraction, the fraction of its pixels where the map is folded (`folds` shows
@@ -38,7 +43,7 @@ struct MeshWarpOptions {
 /// the bound spans them. Between the outermost lines of a mesh and the edges of the image it lies in, and
 /// beyond given points, the map goes on (mesh_data.h, scattered.h).
 ///
-/// Throws Error: a vertex that is not a number, a tolerance below 0, an amount that is not finite, sizes that do not fit.
+/// Throws Error: a mesh that is to be drawn and has more than kMostDrawnCells cells, or is none, a vertex that is not a number, a tolerance below 0, an amount that is not finite, sizes that do not fit.
 Picture warped_picture(const WarpMap& map, const Size& source, const Size& target,
                        const MeshWarpOptions& options);
 

@@ -127,7 +127,23 @@ std::string Features::name(std::size_t i) const {
     return name_of(m_names[i], i);
 }
 
+void Features::add(const Given& feature) {
+    if (feature.kind == Given::Kind::polyline)
+        return add_polyline(feature.points, feature.weight, feature.name);
+    if (feature.kind == Given::Kind::curve) return add_curve(feature.points, feature.weight, feature.name);
+    std::vector<Line> line;
+    for (const std::vector<Point<double>>& ends : feature.points) line.push_back({ends.at(0), ends.at(1)});
+    add_line(line, feature.weight, feature.name);
+}
+
 void Features::add_line(const std::vector<Line>& line, double weight, const std::string& name) {
+    append_line(line, weight, name);
+    Given given{Given::Kind::line, {}, weight, name};
+    for (const Line& l : line) given.points.push_back({l.p, l.q});
+    m_given.push_back(std::move(given));
+}
+
+void Features::append_line(const std::vector<Line>& line, double weight, const std::string& name) {
     const std::string what = name_of(name, size());
     if (line.size() != static_cast<std::size_t>(m_shapes))
         throw Error(what, std::to_string(line.size()) + " shapes", "must be " + std::to_string(m_shapes));
@@ -144,6 +160,12 @@ void Features::add_line(const std::vector<Line>& line, double weight, const std:
 
 void Features::add_polyline(const std::vector<std::vector<Point<double>>>& vertices, double weight,
                             const std::string& name) {
+    append_polyline(vertices, weight, name);
+    m_given.push_back({Given::Kind::polyline, vertices, weight, name});
+}
+
+void Features::append_polyline(const std::vector<std::vector<Point<double>>>& vertices, double weight,
+                               const std::string& name) {
     const std::string what = name_of(name, size());
     if (vertices.size() != static_cast<std::size_t>(m_shapes))
         throw Error(what, std::to_string(vertices.size()) + " shapes", "must be " + std::to_string(m_shapes));
@@ -156,7 +178,7 @@ void Features::add_polyline(const std::vector<std::vector<Point<double>>>& verti
     std::vector<Line> line(vertices.size());
     for (std::size_t i = 0; i + 1 < count; ++i) {
         for (std::size_t k = 0; k < vertices.size(); ++k) line[k] = {vertices[k][i], vertices[k][i + 1]};
-        add_line(line, weight, name);
+        append_line(line, weight, name);
     }
 }
 
@@ -187,7 +209,8 @@ void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_
             for (int j = 1; j <= n; ++j)
                 chain[k].push_back(on_cubic(control_points[k].data() + i, static_cast<double>(j) / n));
     }
-    add_polyline(chain, weight, name);
+    append_polyline(chain, weight, name);
+    m_given.push_back({Given::Kind::curve, control_points, weight, name});
 }
 
 void Features::pin_border(double weight) {
@@ -209,6 +232,8 @@ Features Features::in_order(const std::vector<int>& shapes) const {
         ordered.m_frames[k] = m_frames[from];
         ordered.m_titles[k] = m_titles[from];
         ordered.m_pictures[k] = m_pictures[from];
+        for (std::size_t i = 0; i < m_given.size(); ++i)
+            ordered.m_given[i].points[k] = m_given[i].points[from];
         for (std::size_t i = 0; i < size(); ++i) ordered.m_lines[i * count + k] = m_lines[i * count + from];
     }
     return ordered;

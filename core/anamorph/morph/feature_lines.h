@@ -35,6 +35,16 @@ class Features {
         double width = 0, height = 0;
     };
 
+    /// What was added by one call, as it was given: the two ends of a line, the vertices of a polyline, or the control points of a
+    /// curve, for each shape.
+    struct Given {
+        enum class Kind { line, polyline, curve };
+        Kind kind = Kind::line;
+        std::vector<std::vector<Point<double>>> points;
+        double weight = 1;
+        std::string name = {};
+    };
+
     /// Starts without lines. Throws Error when there are fewer than two shapes.
     explicit Features(int shapes = 2);
 
@@ -49,6 +59,11 @@ class Features {
     double weight(std::size_t i) const { return m_weights[i]; }
     /// The name of line i in messages: its own or "line 7" (the first is 1).
     std::string name(std::size_t i) const;
+
+    /// All that was added, in its order.
+    const std::vector<Given>& given() const { return m_given; }
+    /// Adds it again. Throws Error as the functions below do.
+    void add(const Given& feature);
 
     /// Adds a line, given once for each shape. Throws Error, naming the line, where one of them has no length (in the
     /// pixels that it is given in) or is not finite, and where the weight is not finite or below 0.
@@ -83,7 +98,12 @@ class Features {
     void set_frame(int shape, const Frame& frame);
 
   private:
+    void append_line(const std::vector<Line>& line, double weight, const std::string& name);
+    void append_polyline(const std::vector<std::vector<Point<double>>>& vertices, double weight,
+                         const std::string& name);
+
     int m_shapes;
+    std::vector<Given> m_given;
     std::vector<Line> m_lines;  ///< line by line, shape by shape
     std::vector<double> m_weights;
     std::vector<std::string> m_names;

@@ -344,7 +344,8 @@ Parameter alpha(const std::string& wraps) {
 
 bool adds_alpha(const ParameterValues& values, bool source_has_alpha, bool is_faded) {
     if (!values.toggle("alpha")) return false;
-    if (const std::string& output = values.text("output"); output != "color" && output != "lines")
+    if (const std::string& output = values.text("output");
+        output != "color" && output != "lines" && output != "mesh")
         throw Error("alpha", "1", "is of output=color: must not be given with output=" + output);
     if (source_has_alpha) return false;
     if (values.knows("scheme") && values.text("scheme") == "hardware")

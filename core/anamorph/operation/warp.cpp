@@ -61,7 +61,8 @@ ParameterTable make_warp_table() {
              "of scheme hardware: a program of pixel shader 2.0 that is run for each pixel in place of ours; "
              "it needs no mesh"),
         colorspace("color space to filter in; by default the source's own"),
-        output({{"folds", Word::kNone, "not 0 where the warp folds"}}),
+        output({{"folds", Word::kNone, "not 0 where the warp folds"},
+                {"mesh", Word::kNone, "color with the mesh and its subdivision drawn over it"}}),
         alpha(),
         flip_v(", and of the one that mesh names,"),
     };
@@ -101,6 +102,9 @@ WarpRequest read_warp_request(const ParameterValues& values, const Size& source)
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
     options.folds = values.text("output") == "folds";
+    options.draws_mesh = values.text("output") == "mesh";
+    if (options.draws_mesh && request.machine)
+        throw Error("output", "mesh", "must be another with scheme=hardware");
     options.amount = values.number("amount");
     request.step = values.whole("step");
     if (values.given("direction")) request.direction = chosen<Direction>(values, "direction");
@@ -245,7 +249,7 @@ class Warps final : public Pictures {
         for (Attribute& attribute : said_of_pixels(request.pixel_aspect))
             picture.says.push_back(std::move(attribute));
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
-            !runs_program(request))
+            !request.options.draws_mesh && !runs_program(request))
             picture.moves = 0;
         if (picture.pixels == PixelKind::color && !request.program && !request.machine)
             picture.moved_channels = moved_channels(request.options.data);
