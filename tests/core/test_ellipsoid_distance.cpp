@@ -82,6 +82,67 @@ TEST(EllipsoidContact, IsTheLargestOverAllPlanes) {
     EXPECT_LT(worst_solid, 1e-12);
 }
 
+/// The contact function and the normal by their definition: F's derivative in l has the sign of n ((1 - l)^2 A - l^2 B) n with
+/// n = ((1 - l) A + l B)^-1 r. Halved in the logarithm of l / (1 - l), in long double.
+struct DefinedContact {
+    using Real = long double;
+    using Vector = glm::vec<3, Real>;
+    using Matrix = glm::mat<3, 3, Real>;
+
+    Real ratio = 0;
+    Vector normal{Real{0}};
+
+    static Matrix square_of(const Ellipsoid& e) {
+        Matrix scaled(e.rotation);
+        for (int k = 0; k < 3; ++k) scaled[k] *= Real{e.axes[k]};
+        return scaled * glm::transpose(scaled);
+    }
+    DefinedContact(const Ellipsoid& first, const Ellipsoid& second) {
+        const Matrix a = square_of(first), b = square_of(second);
+        const Vector r = Vector(second.center) - Vector(first.center);
+        Real low = -60, high = 60, l = 0;
+        for (int i = 0; i < 80; ++i) {
+            const Real middle = 0.5L * (low + high), rest = 1 / (1 + std::exp(middle));
+            l = 1 - rest;
+            if (middle < 0) l = std::exp(middle) * rest;
+            const Matrix m = rest * a + l * b;
+            const Vector x = glm::cross(m[1], m[2]), y = glm::cross(m[2], m[0]), z = glm::cross(m[0], m[1]);
+            normal = Vector(glm::dot(x, r), glm::dot(y, r), glm::dot(z, r)) / glm::dot(m[0], x);
+            ratio = std::sqrt(l * rest * glm::dot(r, normal));
+            const Real slope =
+                rest * rest * glm::dot(normal, a * normal) - l * l * glm::dot(normal, b * normal);
+            (slope > 0 ? low : high) = middle;
+        }
+        normal = glm::normalize(normal);
+    }
+};
+
+// Bodies about as large as each other, and up to 1e6 times larger, near and far.
+TEST(EllipsoidContact, IsAsDefined) {
+    constexpr unsigned kSeed = 40;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937_64 random(kSeed);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> unit;
+    const auto ellipsoid = [&](double size, double spread, double away) {
+        Ellipsoid e;
+        e.center = away * glm::dvec3(normal(random), normal(random), normal(random));
+        for (int k = 0; k < 3; ++k) e.axes[k] = size * std::pow(10.0, spread * (unit(random) - 0.5));
+        e.rotation = glm::mat3_cast(
+            glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random))));
+        return e;
+    };
+    for (int i = 0; i < 20000; ++i) {
+        const double size = i % 4 ? 1 : std::pow(10.0, 12 * unit(random) - 6);
+        const double away = std::pow(10.0, 3 * unit(random) - 1), spread = i % 3;
+        const Ellipsoid a = ellipsoid(1, spread, away), b = ellipsoid(size, spread, away);
+        const EllipsoidContact c = contact_of(a, b);
+        const DefinedContact defined(a, b);
+        ASSERT_NEAR(c.ratio / static_cast<double>(defined.ratio), 1, 1e-13) << i;
+        ASSERT_LE(glm::distance(c.normal, glm::dvec3(defined.normal)), 1e-12) << i;
+    }
+}
+
 TEST(EllipsoidContact, NumbersThatAreNone) {
     const double odd[] = {NAN, INFINITY, -INFINITY, 1e308, 1e-308, 0};
     for (const double v : odd)

@@ -22,8 +22,9 @@ void make_columns_square(glm::dmat3& m, glm::dmat3& v) {
                 if (!(std::abs(c) > 1e-16 * std::sqrt(a) * std::sqrt(b))) continue;
                 done = false;
                 const double zeta = (b - a) / (2 * c);
-                const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
-                const double cosine = 1 / std::hypot(1.0, t), sine = cosine * t;
+                // A zeta whose square overflows turns by nothing; t is at most 1.
+                const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
+                const double cosine = 1 / std::sqrt(1 + t * t), sine = cosine * t;
                 for (glm::dmat3* const w : {&m, &v}) {
                     const glm::dvec3 left = (*w)[i], right = (*w)[j];
                     (*w)[i] = cosine * left - sine * right;
@@ -32,6 +33,51 @@ void make_columns_square(glm::dmat3& m, glm::dmat3& v) {
             }
         if (done) return;
     }
+}
+
+/// The value at s of the sum of q_k^2 (1 - s^2 b_k) / (1 + s b_k)^2, which falls as s rises.
+struct FallingSum {
+    double value = 0;
+    double decline = 0;  ///< -s times the derivative, which is -2 (1 + s) sum q_k^2 b_k / (1 + s b_k)^3
+    double noise = 0;    ///< how far rounding may have put `value` off
+
+    FallingSum(const glm::dvec3& q, const glm::dvec3& b, double s) {
+        double size = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double divisor = 1 + s * b[k], w = q[k] / divisor, square = w * w, loss = s * s * b[k];
+            value += square * (1 - loss);
+            size += square * (1 + loss);
+            decline += square * b[k] / divisor;
+        }
+        decline *= 2 * s * (1 + s);
+        // Terms have 12 roundings at most: two of the divisor, each twice as w is squared, so the division, one of the square,
+        // three of 1 - loss, one of the product; sums two. 16 of 2^-53 hold the products of these, and the size's own rounding.
+        noise = 0x1p-49 * size;
+    }
+};
+
+/// Where the falling sum is zero: at the least s no term is negative, at the greatest none positive. Newton's method in log s, which
+/// halves its steps, or else the bracket is halved. In log s the derivative's own, term by term, is within 2 of it either
+/// way: 1 + s / (1 + s) - 3 s b / (1 + s b). So what a step e leaves is at most e^2 exp(2 e).
+double zero_of_falling_sum(const glm::dvec3& q, const glm::dvec3& b) {
+    constexpr int kMostSteps = 200;
+    constexpr double kLastStep = 0x1p-27;
+    double low = 1 / std::sqrt(longest(b)), high = 1 / std::sqrt(std::min({b.x, b.y, b.z}));
+    double s = std::sqrt(low) * std::sqrt(high), last = 2;
+    for (int i = 0; i < kMostSteps && high > low * (1 + 1e-15); ++i) {
+        const FallingSum sum(q, b, s);
+        const double step = sum.value / sum.decline;
+        // exp(step), but for the cube of the step.
+        const double next = s * ((2 + step) / (2 - step));
+        const bool inside = next >= low && next <= high;
+        if (!(std::abs(sum.value) > sum.noise) || (inside && std::abs(step) <= kLastStep))
+            return inside ? next : s;
+        (sum.value > 0 ? low : high) = s;
+        const bool converges = inside && std::abs(step) <= 0.5 * last;
+        last = converges ? std::abs(step) : 2;
+        s = converges ? next : std::sqrt(low) * std::sqrt(high);
+    }
+    return s;
 }
 
 }  // namespace
@@ -62,20 +108,8 @@ EllipsoidContact contact_of(const Ellipsoid& first, const Ellipsoid& second) noe
     const glm::dvec3 q = glm::transpose(v) * ((glm::transpose(first.rotation) * r) / a);
 
     // With s = l / (1 - l) the function is F = sum q_k^2 s / ((1 + s)(1 + s b_k)); its derivative has the
-    // sign of sum q_k^2 (1 - s^2 b_k) / (1 + s b_k)^2, which falls. Bisection in log s.
-    const double low_b = std::min({b.x, b.y, b.z}), high_b = longest(b);
-    double low = -0.5 * std::log(high_b), high = -0.5 * std::log(low_b);
-    for (int i = 0; i < 100 && high - low > 1e-15 * (1 + std::abs(low)); ++i) {
-        const double middle = 0.5 * (low + high), s = std::exp(middle);
-        double slope = 0;
-        for (int k = 0; k < 3; ++k) {
-            const double w = q[k] / (1 + s * b[k]);
-            slope += w * w * (1 - s * s * b[k]);
-        }
-        if (middle <= low || middle >= high) break;
-        (slope > 0 ? low : high) = middle;
-    }
-    const double s = std::exp(0.5 * (low + high));
+    // sign of sum q_k^2 (1 - s^2 b_k) / (1 + s b_k)^2, which falls.
+    const double s = zero_of_falling_sum(q, b);
     const glm::dvec3 w = q / (1.0 + s * b);
     contact.ratio = std::sqrt(s / (1 + s) * glm::dot(q, w));
     const glm::dvec3 normal = first.rotation * ((v * w) / a);

@@ -28,12 +28,8 @@ bool has_extent(const std::vector<glm::dvec2>& points) {
     });
 }
 
-struct Corners {
-    glm::dvec2 low, high;
-};
-
 /// Cuts the segment from a to b to the box; false where nothing is left (Liang and Barsky).
-bool clip(glm::dvec2& a, glm::dvec2& b, const Corners& box) {
+bool clip(glm::dvec2& a, glm::dvec2& b, const ScreenWindow& box) {
     double from = 0, to = 1;
     const glm::dvec2 d = b - a;
     for (int k = 0; k < 2; ++k)
@@ -118,6 +114,7 @@ class Page {
         options.crossings = m_options.crossings;
         options.keep_hidden = m_options.hidden == HiddenLines::dash;
         options.tol = kShareOfTol * m_options.tol;
+        options.window = {m_box.low, m_box.high};
         const Outlines found = outlines(m_frame, m_view, options, parallel_for);
         const std::vector<Outline>& all = found.bodies;
         std::vector<Detail> details(all.size(), Detail::body);
@@ -307,7 +304,7 @@ class Page {
     const FigureFrame& m_frame;
     const DrawingOptions& m_options;
     const View& m_view;
-    Corners m_box{};
+    ScreenWindow m_box;
     std::vector<Ellipsoid> m_shapes;
     Drawing m_drawing;
 };

@@ -51,8 +51,19 @@ Arc cut_arc(const Ellipse<glm::dvec3>& viewed, double near) {
     return {begin, begin + kTurn - 2 * half};
 }
 
-Outline outline_of(const SeenBody& body, std::size_t position, const std::vector<SeenBody>& all,
-                   const std::vector<int>& near_by, const View& view) {
+/// Does the image of a limb lie outside of a window, for all rounding?
+bool is_outside(const SeenBody& body, const View& view, const ScreenWindow& window) {
+    const double zoom = view.perspective() ? view.scale * view.eye_distance : view.scale;
+    for (int k = 0; k < 2; ++k) {
+        const double low = zoom * body.low[k], high = zoom * body.high[k], middle = view.middle[k];
+        const double slack = 0x1p-40 * (std::fabs(low) + std::fabs(high) + std::fabs(middle));
+        if (middle + low - slack > window.high[k] || middle + high + slack < window.low[k]) return true;
+    }
+    return false;
+}
+
+/// The limb of a body, without arcs.
+Outline limb_of(const SeenBody& body, const View& view) {
     Outline outline;
     outline.kind = body.kind;
     if (body.kind == OutlineKind::around_eye) return outline;
@@ -60,6 +71,11 @@ Outline outline_of(const SeenBody& body, std::size_t position, const std::vector
     outline.viewed = body.viewed;
     if (body.kind == OutlineKind::behind) return outline;
     if (body.kind == OutlineKind::whole) outline.screen = screen_of(body.viewed, view);
+    return outline;
+}
+
+void add_arcs(Outline& outline, const SeenBody& body, std::size_t position, const std::vector<SeenBody>& all,
+              const std::vector<int>& near_by, const View& view) {
     std::vector<Arc> hidden;
     for (const int j : near_by)
         if (static_cast<std::size_t>(j) != position)
@@ -67,7 +83,6 @@ Outline outline_of(const SeenBody& body, std::size_t position, const std::vector
     std::vector<Arc> cut;
     if (body.kind == OutlineKind::cut) cut = {cut_arc(body.viewed, view.near)};
     split(std::move(hidden), cut, kTurn, true, outline.visible, outline.hidden);
-    return outline;
 }
 
 }  // namespace
@@ -101,9 +116,12 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
     constexpr std::size_t batch = 16;
     parallel_for(static_cast<std::int64_t>((bodies.size() + batch - 1) / batch), [&](std::int64_t k) {
         const std::size_t first = static_cast<std::size_t>(k) * batch;
-        for (std::size_t i = first; i < std::min(first + batch, bodies.size()); ++i)
-            result.bodies[i] = outline_of(seen[i], i, seen,
-                                          options.hide ? overlaps.with(boxes[i]) : std::vector<int>(), view);
+        for (std::size_t i = first; i < std::min(first + batch, bodies.size()); ++i) {
+            result.bodies[i] = limb_of(seen[i], view);
+            if (seen[i].seen() && !is_outside(seen[i], view, options.window))
+                add_arcs(result.bodies[i], seen[i], i, seen,
+                         options.hide ? overlaps.with(boxes[i]) : std::vector<int>(), view);
+        }
     });
     // Limbs tell at once where a tolerance asks for too many chords, crossings late.
     if (options.crossings)

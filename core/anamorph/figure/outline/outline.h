@@ -68,12 +68,20 @@ struct CrossingCurve {
     std::vector<Arc> visible, hidden;
 };
 
+/// A rectangle of the screen, in pixels.
+struct ScreenWindow {
+    glm::dvec2 low{-HUGE_VAL}, high{HUGE_VAL};
+};
+
 /// The curves that are outlined, and how exactly.
 struct OutlineOptions {
     bool hide = true;                      ///< false: bodies are transparent, as VISIB draws them
     bool crossings = false;                ///< also the curves in which bodies pass through each other
     bool keep_hidden = true;               ///< false: curves of which nothing is seen are left out
     double tol = kOutlineTolRow.standard;  ///< maximum chord error of those curves, in pixels
+    /// What of the screen is looked at: a limb whose image lies wholly outside has neither visible nor hidden arcs. Its body hides
+    /// what is behind it nevertheless.
+    ScreenWindow window;
     /// The names of the bodies for messages; where it is empty, messages give their positions.
     std::vector<std::string> names;
 };

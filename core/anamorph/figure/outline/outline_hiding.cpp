@@ -54,28 +54,43 @@ struct Path {
     }
 };
 
-/// Hidden: inside the body, or behind it. Around the eye: outside it.
-bool is_hidden(const Path& path, const SeenBody& other, double t) {
+enum class Hidden { no, yes, unsure };
+
+/// Hidden: inside the body, or behind it. Around the eye: outside it. Unsure where rounding may decide, which does not count as hidden.
+Hidden hidden_at(const Path& path, const SeenBody& other, double t) {
     const UnitVector d = direction(t);
-    if (other.kind == OutlineKind::around_eye) return path.surface.at(d) > path.surface.noise;
-    if (other.solid && path.surface.at(d) < -path.surface.noise) return true;
-    return other.covers && path.beyond.at(d) > path.beyond_noise && path.cone.at(d) < -path.cone.noise;
+    const auto sign = [](double value, double noise) { return value > noise ? 1 : value < -noise ? -1 : 0; };
+    const int surface = other.solid ? sign(path.surface.at(d), path.surface.noise) : 1;
+    if (other.kind == OutlineKind::around_eye)
+        return surface > 0 ? Hidden::yes : surface < 0 ? Hidden::no : Hidden::unsure;
+    if (surface < 0) return Hidden::yes;
+    const Hidden outside = surface > 0 ? Hidden::no : Hidden::unsure;
+    if (!other.covers) return outside;
+    const int beyond = sign(path.beyond.at(d), path.beyond_noise);
+    if (beyond < 0) return outside;
+    const int cone = sign(path.cone.at(d), path.cone.noise);
+    if (cone > 0) return outside;
+    return beyond > 0 && cone < 0 ? Hidden::yes : Hidden::unsure;
 }
 
-/// Is an arc hidden on which nothing changes? Bodies that touch from inside leave single points of it open,
-/// two at most: three are asked.
+/// Is an arc hidden on which nothing changes? One point tells that is sure. Bodies that touch from inside leave single points of it
+/// open, two at most: three are asked.
 bool is_hidden(const Path& path, const SeenBody& other, const Arc& arc) {
     for (const double part : {0.5, 0.31, 0.77})
-        if (is_hidden(path, other, arc.begin + part * arc.length())) return true;
+        if (const Hidden hidden = hidden_at(path, other, arc.begin + part * arc.length());
+            hidden != Hidden::unsure)
+            return hidden == Hidden::yes;
     return false;
 }
 
-/// No point of the path comes within the circle about the limb of `other` on its own scale.
+/// No point of the path comes within the circle about the limb of `other` on its own scale: on the line from the circle's middle to the
+/// path's, all of it lies farther.
 bool passes_by(const WaveSquares& cone) {
-    const double reach =
-        std::sqrt(cone.x.c * cone.x.c + cone.y.c * cone.y.c + cone.x.s * cone.x.s + cone.y.s * cone.y.s) +
-        std::fabs(cone.w.k) + cone.w.amplitude();
-    return cone.x.k * cone.x.k + cone.y.k * cone.y.k > reach * reach * (1 + 0x1p-40);
+    const double square = cone.x.k * cone.x.k + cone.y.k * cone.y.k, distance = std::sqrt(square);
+    const Wave along{square, cone.x.k * cone.x.c + cone.y.k * cone.y.c,
+                     cone.x.k * cone.x.s + cone.y.k * cone.y.s};
+    const double circle = std::fabs(cone.w.k) + cone.w.amplitude() + cone.noise;
+    return square - along.amplitude() > circle * distance + 0x1p-40 * square;
 }
 
 }  // namespace
@@ -85,14 +100,19 @@ void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, s
     if (around_eye ? !other.solid : !other.covers && !other.solid) return;
     const Path path(body, other, perspective);
     Roots roots;
+    bool all_beyond = false;
     if (!around_eye && other.covers) {
         if (passes_by(path.cone)) return;
-        add_roots(path.cone, roots);
+        const double swing = path.beyond.amplitude();
+        all_beyond = path.beyond.k - swing > path.beyond_noise;
+        // Before the limb's plane, only what is inside is hidden.
+        const bool all_before = path.beyond.k + swing < -path.beyond_noise;
+        if (all_before && !other.solid) return;
+        if (!all_before) add_roots(path.cone, roots);
         // A path may come from before a body to behind it where it only touches the rim.
         add_roots(path.beyond, roots);
     }
     // Beyond the limb's plane, what is inside is also behind.
-    const bool all_beyond = other.covers && path.beyond.k - path.beyond.amplitude() > path.beyond_noise;
     if (other.solid && !all_beyond) add_roots(path.surface, roots);
     if (roots.count == 0) {
         if (is_hidden(path, other, Arc{0, kTurn})) hidden.push_back({0, kTurn});

@@ -4,7 +4,8 @@
 //     f(t) = x^2 + y^2 + z^2 - w^2,   each of x, y, z, w of the form k + c cos(t) + s sin(t).
 //
 // f is only ever evaluated in this factored form: in the coefficients of its expansion, or of the quartic in
-// tan(t/2), the digits are lost that tell a tangent from a crossing. The expansion serves for bounds.
+// tan(t/2), the digits are lost that tell a tangent from a crossing. The expansion serves for bounds, and tells in closed form how many
+// roots there are and about where, as long as none is near a tangent: those are searched for.
 #pragma once
 
 #include <cmath>
