@@ -16,6 +16,7 @@
 #include "anamorph/image/weightless.h"
 // Compiled for each instruction set.
 #include "anamorph/image/block_rows-inl.h"
+#include "anamorph/image/nine_texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
@@ -154,6 +155,130 @@ HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRI
             }
         }
     }
+}
+
+/// The weights of a row's eight texels around those that points fall into, each texel's behind one another.
+struct WeightsOfRow {
+    HWY_ALIGN float at[8][kRowRoom];
+};
+
+/// The texels that pixels fall into, and their weights: `fx` and `fy` are how far into it each lies.
+HWY_INLINE void WeighNine(const TapsOfRow& taps, const Positions<kRowRoom>& p, int count, WeightsOfRow& to) {
+    const Floats d;
+    const auto half = hn::Set(d, 0.5f);
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        const EightWeights w =
+            taps.Weights(hn::Sub(hn::Load(d, p.fx + i), half), hn::Sub(hn::Load(d, p.fy + i), half), i);
+        hn::Store(w.above_left, d, to.at[0] + i);
+        hn::Store(w.above, d, to.at[1] + i);
+        hn::Store(w.above_right, d, to.at[2] + i);
+        hn::Store(w.left, d, to.at[3] + i);
+        hn::Store(w.right, d, to.at[4] + i);
+        hn::Store(w.below_left, d, to.at[5] + i);
+        hn::Store(w.below, d, to.at[6] + i);
+        hn::Store(w.below_right, d, to.at[7] + i);
+    }
+}
+
+/// kQuad channels of pixel i: the texel at `p`, and what those around it differ by, so that where they do not the pixel is it.
+template <class T, int kChannels>
+HWY_INLINE hn::Vec<Quad> NineTexels(const T* HWY_RESTRICT p, ptrdiff_t row, int channels,
+                                    const WeightsOfRow& w, int i) {
+    const Quad d;
+    const int next = kChannels ? kChannels : channels;
+    const auto middle = LoadQuad(p);
+    auto sum = middle;
+    const auto add = [&](int k, const T* from) HWY_ATTR {
+        sum = hn::MulAdd(hn::Set(d, w.at[k][i]), hn::Sub(LoadQuad(from), middle), sum);
+    };
+    add(0, p - row - next);
+    add(1, p - row);
+    add(2, p - row + next);
+    add(3, p - next);
+    add(4, p + next);
+    add(5, p + row - next);
+    add(6, p + row);
+    add(7, p + row + next);
+    return sum;
+}
+
+#if HWY_TARGET != HWY_SCALAR
+/// kQuad channels from `p`, and from `q` behind them.
+template <class T>
+HWY_INLINE hn::Vec<Pair> LoadTwo(const T* p, const T* q) {
+    if constexpr (kHasPair && sizeof(T) != 0)
+        return hn::Combine(Pair(), LoadQuad(q), LoadQuad(p));
+    else
+        return LoadFloats(Pair(), p);
+}
+
+/// NineTexels of pixels i + k and i + 4 + k, the latter in the upper half.
+template <class T, int kChannels, int k>
+HWY_INLINE hn::Vec<Pair> NineOfTwo(const T* HWY_RESTRICT origin, ptrdiff_t row, const int32_t* offset,
+                                   const WeightsOfRow& w, int i) {
+    const Pair d;
+    const T *p = origin + offset[i + k], *q = origin + offset[i + 4 + k];
+    const auto middle = LoadTwo(p, q);
+    auto sum = middle;
+    const auto add = [&](int n, ptrdiff_t to) HWY_ATTR {
+        const auto weight = hn::Broadcast<k>(hn::Load(d, w.at[n] + i));
+        sum = hn::MulAdd(weight, hn::Sub(LoadTwo(p + to, q + to), middle), sum);
+    };
+    add(0, -row - kChannels);
+    add(1, -row);
+    add(2, kChannels - row);
+    add(3, -kChannels);
+    add(4, kChannels);
+    add(5, row - kChannels);
+    add(6, row);
+    add(7, row + kChannels);
+    return sum;
+}
+#endif
+
+/// A row of pixels that read nine texels each.
+template <class T, int kChannels>
+HWY_INLINE void SampleNineRow(const Texels& s, const int32_t* offset, int count, const WeightsOfRow& w,
+                              float* HWY_RESTRICT out) {
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    int i = 0;
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (kHasPair && kChannels != 0)
+        for (; i + 8 <= count; i += 8) {
+            const auto v0 = NineOfTwo<T, kChannels, 0>(origin, row, offset, w, i);
+            const auto v1 = NineOfTwo<T, kChannels, 1>(origin, row, offset, w, i);
+            const auto v2 = NineOfTwo<T, kChannels, 2>(origin, row, offset, w, i);
+            const auto v3 = NineOfTwo<T, kChannels, 3>(origin, row, offset, w, i);
+            // Ascending pixels: a surplus channel is overwritten by the next pixel's.
+            const Quad half;
+            float* HWY_RESTRICT to = out + i * kChannels;
+            hn::StoreU(hn::LowerHalf(half, v0), half, to);
+            hn::StoreU(hn::LowerHalf(half, v1), half, to + kChannels);
+            hn::StoreU(hn::LowerHalf(half, v2), half, to + 2 * kChannels);
+            hn::StoreU(hn::LowerHalf(half, v3), half, to + 3 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v0), half, to + 4 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v1), half, to + 5 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v2), half, to + 6 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v3), half, to + 7 * kChannels);
+        }
+#endif
+    const int channels = kChannels ? kChannels : s.channels;
+    for (; i < count; ++i)
+        for (int c = 0; c < channels; c += kQuad)
+            hn::StoreU(NineTexels<T, kChannels>(origin + offset[i] + c, row, channels, w, i), Quad(),
+                       out + i * channels + c);
+}
+
+template <class T, int kChannels>
+HWY_INLINE void SampleNine(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    Positions<kRowRoom> p;
+    Locate(at, 0, at.count, Tap{}, 0, channels, static_cast<int32_t>(row), p);
+    WeightsOfRow w;
+    WeighNine(TapsOfRow(s, at), p, at.count, w);
+    SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
 }
 
 /// Catmull-Rom weights of the four texels about a fraction f.
@@ -307,6 +432,8 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out) {
         constexpr int k = decltype(channels)::value;
         if (s.tap_count == 1)
             SampleBilinear<T, k>(s, at, out);
+        else if (ReadNine(s))
+            SampleNine<T, k>(s, at, out);
         else
             SampleTaps<T, k>(s, at, out);
     };
@@ -419,7 +546,7 @@ void DrawBilinear(const Drawing& to) {
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int count = to.end - to.begin;
-    const RowLocator<T, kChannels> locator(to);
+    const RowLocator<T, kChannels> locator(to, 0.5f);
     Positions<kRowRoom> positions[kRows];
     HWY_ALIGN float values[2][kRowRoom * kChannels];
 
@@ -440,9 +567,38 @@ void DrawBilinear(const Drawing& to) {
     InStages(to, locate, sample, store);
 }
 
+/// Taps that read nine texels, three or four channels.
+template <class T, int kChannels>
+void DrawNine(const Drawing& to) {
+    const Texels& s = to.texels;
+    const int count = to.end - to.begin;
+    const TapsOfRow taps(s, {});
+    const RowLocator<T, kChannels> locator(to, 0);
+    Positions<kRowRoom> positions[kRows];
+    WeightsOfRow weights;
+    HWY_ALIGN float values[2][kRowRoom * kChannels];
+
+    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j % kRows]); };
+    const auto sample = [&](int j) HWY_ATTR {
+        const Positions<kRowRoom>& p = positions[j % kRows];
+        WeighNine(taps, p, count, weights);
+        SampleNineRow<T, kChannels>(s, p.offset, count, weights, values[j & 1]);
+    };
+    const auto store = [&](int j) HWY_ATTR {
+        MendRow(to, j, values[j & 1]);
+        StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
+                 to.to + (j - to.row_begin) * to.row_stride);
+    };
+    InStages(to, locate, sample, store);
+}
+
 template <class T>
 void DrawTyped(const Drawing& to) {
     const Texels& s = to.texels;
+    if (ReadNine(s) && kQuad == 4) {
+        if (s.channels == 3) return DrawNine<T, 3>(to);
+        if (s.channels == 4) return DrawNine<T, 4>(to);
+    }
     if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
         if (s.channels == 3) return DrawBilinear<T, 3>(to);
         if (s.channels == 4) return DrawBilinear<T, 4>(to);
