@@ -126,7 +126,7 @@ struct Case {
 
 /// What block_sampler.h states for a value before it is rounded, and what rounding it costs.
 long double error_of(PixelType type, bool packed) {
-    if (type == PixelType::uint8) return 0.5L + (packed ? 1 / 16.0L : 16 * 0x1p-24L * 255);
+    if (type == PixelType::uint8) return 0.5L + (packed ? 1 / 15.0L : 16 * 0x1p-24L * 255);
     if (type == PixelType::uint16) return 0.5L + 16 * 0x1p-24L * 65535;
     return 16 * 0x1p-24L + (type == PixelType::half ? 0x1p-11L : 0);
 }

@@ -8,7 +8,7 @@
 // Where taps make up a pixel their places are the filter's, rounded to float. A filtered value differs from
 // the scalar path's by float rounding: at most 16 half-ULP of the largest texel read. Bilinear pixels of three or four
 // channels that draw_block draws from uint8 to uint8 are filtered in whole numbers: before they are rounded to a level,
-// they differ by at most 1/32 level, of 255 (packed_blocks.h), and of 1/16 where two or four taps lie within half a texel of the
+// they differ by at most 1/32 level, of 255 (packed_blocks.h), and of 1/15 where two or four taps lie within half a texel of the
 // point. That is an error of the value, not of the point.
 #pragma once
 

@@ -281,6 +281,55 @@ HWY_INLINE void SampleNine(const Texels& s, const Offsets& at, float* HWY_RESTRI
     SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
 }
 
+/// Tap k of the four that a pixel has for itself.
+HWY_INLINE Tap OwnTap(const OwnTaps& own, int i, int k) {
+    const float a = k & 1 ? 1.0f : -1.0f, b = k & 2 ? 1.0f : -1.0f;
+    return {a * own.x_i[i] + b * own.x_j[i], a * own.y_i[i] + b * own.y_j[i]};
+}
+
+/// Does a tap of a pixel lie more than half a texel away?
+HWY_INLINE bool ReachFar(const OwnTaps& own, int i) {
+    return !(std::fabs(own.x_i[i]) + std::fabs(own.x_j[i]) <= 0.5f &&
+             std::fabs(own.y_i[i]) + std::fabs(own.y_j[i]) <= 0.5f);
+}
+
+/// Pixels with taps of their own: nine texels where these suffice, else four taps.
+template <class T, int kChannels>
+HWY_INLINE void SampleOwn(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    Positions<kRowRoom> p;
+    Locate(at, 0, at.count, Tap{}, 0, channels, static_cast<int32_t>(row), p);
+    WeightsOfRow w;
+    WeighNine(TapsOfRow(s, at), p, at.count, w);
+    SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
+    for (int i = 0; i < at.count; ++i) {
+        if (!ReachFar(at.own, i)) continue;
+        ptrdiff_t offset[4];
+        float fx[4], fy[4];
+        for (int k = 0; k < 4; ++k) {
+            const Tap tap = OwnTap(at.own, i, k);
+            const float x = p.fx[i] - 0.5f + tap.x, y = p.fy[i] - 0.5f + tap.y;
+            const float tx = std::floor(x), ty = std::floor(y);
+            offset[k] = p.offset[i] + static_cast<int>(ty) * row + static_cast<int>(tx) * channels;
+            fx[k] = x - tx;
+            fy[k] = y - ty;
+        }
+        for (int c = 0; c < channels; c += kQuad) {
+            auto sum = Bilinear<T, kChannels>(origin + offset[0] + c, row, channels, fx[0], fy[0]);
+            for (int k = 1; k < 4; ++k)
+                sum =
+                    hn::Add(sum, Bilinear<T, kChannels>(origin + offset[k] + c, row, channels, fx[k], fy[k]));
+            HWY_ALIGN float v[kQuad];
+            hn::Store(hn::Mul(sum, hn::Set(d, 0.25f)), d, v);
+            std::memcpy(out + i * channels + c, v,
+                        sizeof(float) * static_cast<size_t>(HWY_MIN(kQuad, channels - c)));
+        }
+    }
+}
+
 /// Catmull-Rom weights of the four texels about a fraction f.
 HWY_INLINE void CubicWeights(float f, float* w) {
     const float g = 1 - f;
@@ -353,17 +402,33 @@ HWY_INLINE bool TapsLieTogether(const Texels& s) {
     return all;
 }
 
+/// Finds the positions of a tap that each pixel has for itself; those that lie together are one in their middle.
+HWY_INLINE void LocateOwn(const Offsets& at, int k, int channels, int32_t row, Positions<kRowRoom>& p) {
+    HWY_ALIGN float x[kRowRoom] = {}, y[kRowRoom] = {};
+    for (int i = 0; i < at.count; ++i) {
+        const Tap tap = OwnTap(at.own, i, k), other = OwnTap(at.own, i, k ^ 1);
+        const bool together = HWY_MAX(HWY_MAX(std::fabs(tap.x), std::fabs(tap.y)),
+                                      HWY_MAX(std::fabs(other.x), std::fabs(other.y))) < kSameTap;
+        x[i] = at.x[i] + (together ? 0 : tap.x);
+        y[i] = at.y[i] + (together ? 0 : tap.y);
+    }
+    Locate({x, y, at.count, at.whole_x, at.whole_y}, 0, at.count, Tap{}, 0.5f, channels, row, p);
+}
+
 /// The channels of a row that came out infinite or as no numbers, again, as weightless.h says.
 void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const int bytes = size_of(s.type), count = at.count * s.channels, side = is_cubic(s.kernel) ? 4 : 2;
     const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * bytes;
     const auto row = static_cast<int32_t>(s.row_stride / bytes);
     std::vector<double> sum(static_cast<size_t>(count));
-    const bool together = TapsLieTogether(s);
-    const int taps = together ? 1 : s.tap_count;
+    const bool own = at.own.x_i, together = !own && TapsLieTogether(s);
+    const int taps = own ? 4 : together ? 1 : s.tap_count;
     for (int tap = 0; tap < taps; ++tap) {
         Positions<kRowRoom> p;
-        Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
+        if (own)
+            LocateOwn(at, tap, s.channels, row, p);
+        else
+            Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
         for (int i = 0; i < at.count; ++i) {
             float wx[4], wy[4];
             KernelWeights(s.kernel, p.fx[i], wx);
@@ -430,7 +495,9 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out) {
     if (s.kernel == Kernel::bicubic_clamped) return SampleBicubic<T, true>(s, at, out);
     const auto with = [&](auto channels) {
         constexpr int k = decltype(channels)::value;
-        if (s.tap_count == 1)
+        if (at.own.x_i)
+            SampleOwn<T, k>(s, at, out);
+        else if (s.tap_count == 1)
             SampleBilinear<T, k>(s, at, out);
         else if (ReadNine(s))
             SampleNine<T, k>(s, at, out);
