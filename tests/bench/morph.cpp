@@ -10,6 +10,9 @@
 // Case paper: Kim's experiment (2003, 6.3), 32 lines on 600 x 600: mesh_12 and mesh_12_plus_1 evaluate the
 // map at the vertices of 12 x 12 cells, cut once more near the lines for the latter.
 //
+// Case 256_drawn: that morph drawn from two pictures of float RGB: automatic is bilinear, `defaults` has the default filter,
+// antialias, from pyramids that are made anew.
+//
 // Case frame: whole morphed pictures, RGB8; xmorph's `morph` where it is installed, the time of its process
 // less that of the same run without warping.
 //
@@ -28,6 +31,7 @@
 
 #include "../core/each_feature_block.h"
 #include "../core/feature_families.h"
+#include "anamorph/image/pyramid.h"
 #include "anamorph/morph/feature_rows.h"
 #include "anamorph/morph/morph.h"
 #include "anamorph/morph/near_far.h"
@@ -376,6 +380,53 @@ void run_many_lines(Bench& bench) {
                                     bench.report().find(name, "automatic", 0.001));
 }
 
+/// Whole pictures of the same morph, with the default filter beside bilinear.
+void run_drawn(Bench& bench) {
+    const std::string name = "256_drawn";
+    if (!bench.settings().wants_case(name)) return;
+    const int size = std::min(2048, bench.settings().size);
+    const auto features = families::Maker(size, kSeed).make("random", 256);
+    const std::vector<Size> sizes(2, {size, size});
+    std::vector<float> values[3];
+    for (std::vector<float>& v : values)
+        for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size); ++i)
+            v.push_back(0.5f + 0.4f * std::sin(0.001f * static_cast<float>(i % 6151)));
+    const auto view_of = [&](std::vector<float>& v) {
+        return packed_view(reinterpret_cast<std::byte*>(v.data()), PixelType::float32, size, size, 3);
+    };
+    const auto source_of = [&](std::vector<float>& v) {
+        return packed_view(reinterpret_cast<const std::byte*>(v.data()), PixelType::float32, size, size, 3);
+    };
+    const MemorySource a(source_of(values[0])), b(source_of(values[1]));
+    const ImageView to = view_of(values[2]);
+    MorphOptions bilinear;
+    bilinear.filter = Filter::bilinear;
+    const std::vector<Times> times =
+        time_interleaved({{[&] {
+                               morphed_picture(features, sizes, {size, size}, bilinear)
+                                   .draw({&a, &b}, {0, 0, size, size}, to, bench.threads());
+                           },
+                           bench.settings().threads},
+                          {[&] {
+                               const Pyramid first(a), second(b);
+                               morphed_picture(features, sizes, {size, size}, {})
+                                   .draw({&first, &second}, {0, 0, size, size}, to, bench.threads());
+                           },
+                           bench.settings().threads}},
+                         bench.settings().rounds);
+    const char* const schemes[] = {"automatic", "defaults"};
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (!bench.settings().wants_scheme(schemes[i])) continue;
+        Row r = bench.row(name, size, schemes[i], times[i], kNone);
+        r.tol_px = bilinear.tol;
+        r.one_tap = i == 0;
+        bench.report().add(r);
+    }
+    bench.report().add_speed_target("256 lines: bilinear's time over that of the default filter", 1 / 1.8,
+                                    bench.report().find(name, "automatic"),
+                                    bench.report().find(name, "defaults"));
+}
+
 /// How time grows with lines: near/far alone, since a loop over all of them takes too long.
 void run_short_lines(Bench& bench) {
     const int size = std::min(512, bench.settings().size);
@@ -503,6 +554,7 @@ void run(const Settings& settings, Report& report) {
     Bench bench(settings, report);
     run_families(bench);
     run_many_lines(bench);
+    run_drawn(bench);
     run_short_lines(bench);
     run_paper(bench);
     run_frame(bench);

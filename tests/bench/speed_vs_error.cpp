@@ -176,6 +176,20 @@ void print_weakest(const Report& report) {
     }
 }
 
+/// What users get who set nothing (scheme `defaults`), beside the same picture read at one point a pixel.
+void print_defaults(const Report& report) {
+    bool first = true;
+    for (const Row& ours : report.rows) {
+        if (ours.scheme != "defaults") continue;
+        const Row* const bare = report.find(ours.case_name, "automatic", kUsualTol, ours.threads);
+        if (!bare) continue;
+        if (first) std::printf("\nwith the defaults, beside bilinear at tol %g:\n", kUsualTol);
+        first = false;
+        std::printf("  %-20s %9.3f ns/px, %.2f times %.3f\n", ours.case_name.c_str(), ours.ns_per_px,
+                    ours.ns_per_px / bare->ns_per_px, bare->ns_per_px);
+    }
+}
+
 int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
     if (settings.calibrate) {
@@ -205,6 +219,7 @@ int run(int argc, char** argv) {
     csv->close();
     print_targets(report);
     print_weakest(report);
+    print_defaults(report);
     for (const std::string& failure : report.failures)
         std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());
     return report.failures.empty() ? 0 : 1;

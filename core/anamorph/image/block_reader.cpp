@@ -643,6 +643,8 @@ bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box&
     if (m_filter == Filter::summed_area) return rows_one_by_one(block, points, part, row);
     const auto at = at_points(points);
     if (lie_apart(at, block)) return rows_apart(block, points, part, row);
+    if (m_filter == Filter::antialias && !m_map.is_smooth_in_pixels() && !is_line(block))
+        return own_rows(block, points, part, row);
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
     };
@@ -666,6 +668,55 @@ bool BlockReader::for_each_footprint(const Block& block, const At& at, const Box
             return by_pixels && has_few_steps(cell) ? pixels_of_cell(block, cell, part, row, body)
                                                     : body(cell, filtering(j));
         });
+}
+
+/// The pixels of a block by one filter where that serves all, else by its largest cells whose pixels all have taps of their own or
+/// share a filter.
+bool BlockReader::own_rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
+    const auto body = [&](const Box& cell, const Filtering& f) {
+        return points_cell(f, block, points, cell, part, row);
+    };
+    Filtering shared;
+    if (filtering_of(block, points, shared)) return body(whole(block), shared);
+    find_own(block, points);
+    const auto at = at_points(points);
+    const Steps steps(at, block);
+    const auto draw_cell = [&](const auto& self, const Box& cell) -> bool {
+        if (part_of(cell, block, part).empty()) return true;
+        const simd::OwnKind kind = own_kind(cell);
+        if (kind != simd::OwnKind::others) return body(cell, own_filtering(kind));
+        const Jacobian j = steps.jacobian(cell);
+        if (texels_in(cell) <= 1 || steps.alike(cell, j)) return body(cell, filtering(j));
+        return for_halves(cell, [&](const Box& half) { return self(self, half); });
+    };
+    return draw_cell(draw_cell, whole(block));
+}
+
+/// Finds the taps that the pixels of a block have for themselves.
+void BlockReader::find_own(const Block& block, const BlockPoints& points) {
+    constexpr std::ptrdiff_t kStride = simd::kRowRoom, kPlane = kStride * Block::kMaxSide;
+    m_own_taps.resize(std::size_t{4 * kPlane});
+    m_own_kinds.resize(std::size_t{kPlane});
+    float* const taps = m_own_taps.data();
+    m_own = {taps, taps + kPlane, taps + 2 * kPlane, taps + 3 * kPlane, m_own_kinds.data(), kStride};
+    simd::own_taps(points.x, points.y, points.row_stride, block.box.width(), block.box.height(), m_own);
+}
+
+/// What serves all pixels of a cell.
+simd::OwnKind BlockReader::own_kind(const Box& cell) const {
+    std::int32_t most = 0;
+    for (int j = cell.y0; j < cell.y1; ++j) {
+        const std::int32_t* const kinds = m_own.kind + j * m_own.stride;
+        for (int i = cell.x0; i < cell.x1; ++i) most = std::max(most, kinds[i]);
+    }
+    return static_cast<simd::OwnKind>(most);
+}
+
+BlockReader::Filtering BlockReader::own_filtering(simd::OwnKind kind) const {
+    Filtering f = filtering({});
+    f.own = kind != simd::OwnKind::one;
+    if (f.own) f.reach_x = f.reach_y = kind == simd::OwnKind::nine ? 0.5 : simd::kOwnReach;
+    return f;
 }
 
 /// The pixels of a cell, each by the map's derivative there.
@@ -703,6 +754,9 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
     Range x, y;
+    const auto taps_of = [&](int j) {
+        return f.own ? m_own.at((j - block.box.y0) * m_own.stride + own.x0 - block.box.x0) : simd::OwnTaps{};
+    };
     const auto in_parts = [&] {
         if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, points, own, row);
         return for_halves(cell,
@@ -722,7 +776,7 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
         };
         const LevelPoints lx(block.base_x + x.low, block.base_x + x.high, f.scale_x),
             ly(block.base_y + y.low, block.base_y + y.high, f.scale_y);
-        const Got got = split_rows(f, block.source_piece, at, lx, ly, cell, own, row);
+        const Got got = split_rows(f, block.source_piece, at, taps_of, lx, ly, cell, own, row);
         return got == Got::too_large ? in_parts() : got == Got::window;
     }
     Window window;
@@ -732,17 +786,18 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
     const simd::Texels texels = texels_of(f, window, block.base_x, block.base_y, texels_in(cell));
     for (int j = own.y0; j < own.y1; ++j) {
         const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
-        sample(texels, {points.x + at, points.y + at, own.width()}, window.type, own.x0, j, row);
+        sample(texels, {points.x + at, points.y + at, own.width(), nullptr, nullptr, taps_of(j)}, window.type,
+               own.x0, j, row);
     }
     return true;
 }
 
 /// The pixels of `own`, a part of a cell whose points lie in the given ranges; `points` gives the source
-/// points of a row of them.
-template <class RowPoints>
+/// points of a row of them, `taps` what they have for themselves.
+template <class RowPoints, class RowTaps>
 BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const RowPoints& points,
-                                         const LevelPoints& x, const LevelPoints& y, const Box& cell,
-                                         const Box& own, const Row& row) {
+                                         const RowTaps& taps, const LevelPoints& x, const LevelPoints& y,
+                                         const Box& cell, const Box& own, const Row& row) {
     Window window;
     const Got got = window_of(f, piece, x.base, x.range, y.base, y.range, cell, window);
     if (got != Got::window) return got;
@@ -753,7 +808,7 @@ BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const Ro
         const Point<const double*> at = points(j);
         simd::split_points(at.x, own.width(), x.scale, x.base, ix, fx);
         simd::split_points(at.y, own.width(), y.scale, y.base, iy, fy);
-        sample(texels, {fx, fy, own.width(), ix, iy}, window.type, own.x0, j, row);
+        sample(texels, {fx, fy, own.width(), ix, iy, taps(j)}, window.type, own.x0, j, row);
     }
     return Got::window;
 }
@@ -824,8 +879,10 @@ bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& 
         const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
         return Point<const double*>{points.x + k, points.y + k};
     };
-    const Got got = split_rows(f, m_exact.piece(cell.y0)[cell.x0], at, LevelPoints(x.low, x.high, f.scale_x),
-                               LevelPoints(y.low, y.high, f.scale_y), cell, own, row);
+    const auto none = [](int) { return simd::OwnTaps{}; };
+    const Got got =
+        split_rows(f, m_exact.piece(cell.y0)[cell.x0], at, none, LevelPoints(x.low, x.high, f.scale_x),
+                   LevelPoints(y.low, y.high, f.scale_y), cell, own, row);
     return got == Got::too_large ? in_parts() : got == Got::window;
 }
 

@@ -12,6 +12,7 @@
 #include "anamorph/image/apart_reader.h"
 #include "anamorph/image/canvas.h"
 #include "anamorph/image/footprint.h"
+#include "anamorph/image/own_taps.h"
 #include "anamorph/image/point_sampler.h"
 #include "anamorph/image/split_points.h"
 #include "anamorph/image/window.h"
@@ -90,7 +91,8 @@ void block_row(const BlockMap& map, const Block& block, const Box& part, int j, 
 ///
 /// What it averages. An antialiased pixel takes a footprint whose axes are the map's own, its steps from
 /// pixel to pixel, to within a quarter of their lengths or half a source pixel: by blocks where one serves
-/// all of their pixels, else by parts of them, down to single pixels. Where a pixel's own footprints differ by more than
+/// all of their pixels, else by parts of them, down to single pixels; where maps are not smooth in pixels these take footprints
+/// of their own, exactly, as long as they are small (image/own_taps.h). Where a pixel's own footprints differ by more than
 /// that it is drawn in parts (BlockMap::is_smooth_in_pixels).
 class BlockReader {
   public:
@@ -120,6 +122,7 @@ class BlockReader {
         int tap_count = 1;
         std::array<simd::Tap, simd::kMaxTaps> taps{};
         double reach_x = 0, reach_y = 0;  ///< reach of the taps, level texels
+        bool own = false;                 ///< has each pixel taps of its own (m_own)?
     };
     using Range = simd::Ends;
     /// Points as whole texels and rests.
@@ -175,6 +178,10 @@ class BlockReader {
     template <class Body>
     bool pixels_of_cell(const Block& block, const Box& cell, const Box& part, const Row& row,
                         const Body& body);
+    bool own_rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
+    void find_own(const Block& block, const BlockPoints& points);
+    simd::OwnKind own_kind(const Box& cell) const;
+    Filtering own_filtering(simd::OwnKind kind) const;
     static bool ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y);
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
                      const Box& part, const Row& row);
@@ -182,9 +189,10 @@ class BlockReader {
     void read_in_double(const Block& block);
     bool lie_together(const Box& cell) const;
     bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
-    template <class RowPoints>
-    Got split_rows(const Filtering& f, int piece, const RowPoints& points, const LevelPoints& x,
-                   const LevelPoints& y, const Box& cell, const Box& own, const Row& row);
+    template <class RowPoints, class RowTaps>
+    Got split_rows(const Filtering& f, int piece, const RowPoints& points, const RowTaps& taps,
+                   const LevelPoints& x, const LevelPoints& y, const Box& cell, const Box& own,
+                   const Row& row);
 
     bool shares_filter(const BlockPolynomial& polynomial, const Block& block) const;
     BlockPoints points_of(const Block& block);
@@ -218,6 +226,9 @@ class BlockReader {
     std::vector<std::int32_t> m_texels;  ///< the texels that points fall into; m_rests has the rests
     std::vector<float> m_rests;
     std::vector<Point<int>> m_over_edge;
+    std::vector<float> m_own_taps;
+    std::vector<std::int32_t> m_own_kinds;
+    simd::OwnTapRows m_own{};        ///< taps of the block's pixels, counted from its corner
     const PartialPixels* m_partial;  ///< of the map, or null
     std::vector<PartialPixel> m_partial_pixels;
 };

@@ -297,18 +297,19 @@ HWY_INLINE void FetchBilinear(const Texels& s, const int32_t* offset, int count)
     Fetch<T, kChannels>(s, offset, count, 1, 2);
 }
 
-/// Finds the positions of the pixels of a drawing's rows among its texels, for one bilinear tap.
+/// Finds the positions of the pixels of a drawing's rows among its texels: of their one bilinear tap, with a shift of half a
+/// texel, or of the points themselves, with none.
 template <class T, int kChannels>
 class RowLocator {
   public:
-    HWY_INLINE explicit RowLocator(const Drawing& drawing)
+    HWY_INLINE RowLocator(const Drawing& drawing, float shift)
         : m_drawing(drawing),
           m_steps(drawing.block),
           m_row(hn::Set(Ints(),
                         static_cast<int32_t>(drawing.texels.row_stride / static_cast<ptrdiff_t>(sizeof(T))))),
           m_pixel(hn::Set(Ints(), kChannels)),
-          m_shift_x(hn::Set(Floats(), drawing.texels.taps[0].x - 0.5f)),
-          m_shift_y(hn::Set(Floats(), drawing.texels.taps[0].y - 0.5f)) {}
+          m_shift_x(hn::Set(Floats(), shift > 0 ? drawing.texels.taps[0].x - shift : 0)),
+          m_shift_y(hn::Set(Floats(), shift > 0 ? drawing.texels.taps[0].y - shift : 0)) {}
 
     HWY_INLINE void Row(int j, Positions<kRowRoom>& to) const {
         const int begin = m_drawing.begin, count = m_drawing.end - begin;

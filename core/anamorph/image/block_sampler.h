@@ -8,7 +8,8 @@
 // Where taps make up a pixel their places are the filter's, rounded to float. A filtered value differs from
 // the scalar path's by float rounding: at most 16 half-ULP of the largest texel read. Bilinear pixels of three or four
 // channels that draw_block draws from uint8 to uint8 are filtered in whole numbers: before they are rounded to a level,
-// they differ by at most 1/32 level, of 255 (packed_blocks.h). That is an error of the value, not of the point.
+// they differ by at most 1/32 level, of 255 (packed_blocks.h), and of 1/15 where two or four taps lie within half a texel of the
+// point. That is an error of the value, not of the point.
 #pragma once
 
 #include <cstddef>
@@ -67,12 +68,19 @@ inline constexpr int kMaxTaps = 64;
 /// The most pixels that a row has.
 inline constexpr int kMaxRow = 64;
 
+/// Taps that each pixel has for itself, in place of those of Texels: four, at the sums and differences of (x_i, y_i) and
+/// (x_j, y_j) either way, in texels. Arrays with room for 16 more, or null.
+struct OwnTaps {
+    const float *x_i = nullptr, *y_i = nullptr, *x_j = nullptr, *y_j = nullptr;
+};
+
 /// Offsets of `count` <= kMaxRow pixels in texels (centres at + 0.5): (x[i], y[i]), or (whole_x[i] + x[i],
 /// whole_y[i] + y[i]) where those are given.
 struct Offsets {
     const float *x, *y;
     int count;
     const std::int32_t *whole_x = nullptr, *whole_y = nullptr;
+    OwnTaps own = {};  ///< of bilinear pixels
 };
 /// The number of pixels that arrays of Offsets have room for.
 inline constexpr int kRowRoom = kMaxRow + 16;

@@ -16,6 +16,7 @@
 #include "anamorph/image/weightless.h"
 // Compiled for each instruction set.
 #include "anamorph/image/block_rows-inl.h"
+#include "anamorph/image/nine_texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
@@ -156,6 +157,179 @@ HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRI
     }
 }
 
+/// The weights of a row's eight texels around those that points fall into, each texel's behind one another.
+struct WeightsOfRow {
+    HWY_ALIGN float at[8][kRowRoom];
+};
+
+/// The texels that pixels fall into, and their weights: `fx` and `fy` are how far into it each lies.
+HWY_INLINE void WeighNine(const TapsOfRow& taps, const Positions<kRowRoom>& p, int count, WeightsOfRow& to) {
+    const Floats d;
+    const auto half = hn::Set(d, 0.5f);
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        const EightWeights w =
+            taps.Weights(hn::Sub(hn::Load(d, p.fx + i), half), hn::Sub(hn::Load(d, p.fy + i), half), i);
+        hn::Store(w.above_left, d, to.at[0] + i);
+        hn::Store(w.above, d, to.at[1] + i);
+        hn::Store(w.above_right, d, to.at[2] + i);
+        hn::Store(w.left, d, to.at[3] + i);
+        hn::Store(w.right, d, to.at[4] + i);
+        hn::Store(w.below_left, d, to.at[5] + i);
+        hn::Store(w.below, d, to.at[6] + i);
+        hn::Store(w.below_right, d, to.at[7] + i);
+    }
+}
+
+/// kQuad channels of pixel i: the texel at `p`, and what those around it differ by, so that where they do not the pixel is it.
+template <class T, int kChannels>
+HWY_INLINE hn::Vec<Quad> NineTexels(const T* HWY_RESTRICT p, ptrdiff_t row, int channels,
+                                    const WeightsOfRow& w, int i) {
+    const Quad d;
+    const int next = kChannels ? kChannels : channels;
+    const auto middle = LoadQuad(p);
+    auto sum = middle;
+    const auto add = [&](int k, const T* from) HWY_ATTR {
+        sum = hn::MulAdd(hn::Set(d, w.at[k][i]), hn::Sub(LoadQuad(from), middle), sum);
+    };
+    add(0, p - row - next);
+    add(1, p - row);
+    add(2, p - row + next);
+    add(3, p - next);
+    add(4, p + next);
+    add(5, p + row - next);
+    add(6, p + row);
+    add(7, p + row + next);
+    return sum;
+}
+
+#if HWY_TARGET != HWY_SCALAR
+/// kQuad channels from `p`, and from `q` behind them.
+template <class T>
+HWY_INLINE hn::Vec<Pair> LoadTwo(const T* p, const T* q) {
+    if constexpr (kHasPair && sizeof(T) != 0)
+        return hn::Combine(Pair(), LoadQuad(q), LoadQuad(p));
+    else
+        return LoadFloats(Pair(), p);
+}
+
+/// NineTexels of pixels i + k and i + 4 + k, the latter in the upper half.
+template <class T, int kChannels, int k>
+HWY_INLINE hn::Vec<Pair> NineOfTwo(const T* HWY_RESTRICT origin, ptrdiff_t row, const int32_t* offset,
+                                   const WeightsOfRow& w, int i) {
+    const Pair d;
+    const T *p = origin + offset[i + k], *q = origin + offset[i + 4 + k];
+    const auto middle = LoadTwo(p, q);
+    auto sum = middle;
+    const auto add = [&](int n, ptrdiff_t to) HWY_ATTR {
+        const auto weight = hn::Broadcast<k>(hn::Load(d, w.at[n] + i));
+        sum = hn::MulAdd(weight, hn::Sub(LoadTwo(p + to, q + to), middle), sum);
+    };
+    add(0, -row - kChannels);
+    add(1, -row);
+    add(2, kChannels - row);
+    add(3, -kChannels);
+    add(4, kChannels);
+    add(5, row - kChannels);
+    add(6, row);
+    add(7, row + kChannels);
+    return sum;
+}
+#endif
+
+/// A row of pixels that read nine texels each.
+template <class T, int kChannels>
+HWY_INLINE void SampleNineRow(const Texels& s, const int32_t* offset, int count, const WeightsOfRow& w,
+                              float* HWY_RESTRICT out) {
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    int i = 0;
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (kHasPair && kChannels != 0)
+        for (; i + 8 <= count; i += 8) {
+            const auto v0 = NineOfTwo<T, kChannels, 0>(origin, row, offset, w, i);
+            const auto v1 = NineOfTwo<T, kChannels, 1>(origin, row, offset, w, i);
+            const auto v2 = NineOfTwo<T, kChannels, 2>(origin, row, offset, w, i);
+            const auto v3 = NineOfTwo<T, kChannels, 3>(origin, row, offset, w, i);
+            // Ascending pixels: a surplus channel is overwritten by the next pixel's.
+            const Quad half;
+            float* HWY_RESTRICT to = out + i * kChannels;
+            hn::StoreU(hn::LowerHalf(half, v0), half, to);
+            hn::StoreU(hn::LowerHalf(half, v1), half, to + kChannels);
+            hn::StoreU(hn::LowerHalf(half, v2), half, to + 2 * kChannels);
+            hn::StoreU(hn::LowerHalf(half, v3), half, to + 3 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v0), half, to + 4 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v1), half, to + 5 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v2), half, to + 6 * kChannels);
+            hn::StoreU(hn::UpperHalf(half, v3), half, to + 7 * kChannels);
+        }
+#endif
+    const int channels = kChannels ? kChannels : s.channels;
+    for (; i < count; ++i)
+        for (int c = 0; c < channels; c += kQuad)
+            hn::StoreU(NineTexels<T, kChannels>(origin + offset[i] + c, row, channels, w, i), Quad(),
+                       out + i * channels + c);
+}
+
+template <class T, int kChannels>
+HWY_INLINE void SampleNine(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    Positions<kRowRoom> p;
+    Locate(at, 0, at.count, Tap{}, 0, channels, static_cast<int32_t>(row), p);
+    WeightsOfRow w;
+    WeighNine(TapsOfRow(s, at), p, at.count, w);
+    SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
+}
+
+/// Tap k of the four that a pixel has for itself.
+HWY_INLINE Tap OwnTap(const OwnTaps& own, int i, int k) {
+    const float a = k & 1 ? 1.0f : -1.0f, b = k & 2 ? 1.0f : -1.0f;
+    return {a * own.x_i[i] + b * own.x_j[i], a * own.y_i[i] + b * own.y_j[i]};
+}
+
+/// Does a tap of a pixel lie more than half a texel away?
+HWY_INLINE bool ReachFar(const OwnTaps& own, int i) {
+    return !(std::fabs(own.x_i[i]) + std::fabs(own.x_j[i]) <= 0.5f &&
+             std::fabs(own.y_i[i]) + std::fabs(own.y_j[i]) <= 0.5f);
+}
+
+/// Pixels with taps of their own: nine texels where these suffice, else four taps.
+template <class T, int kChannels>
+HWY_INLINE void SampleOwn(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    Positions<kRowRoom> p;
+    Locate(at, 0, at.count, Tap{}, 0, channels, static_cast<int32_t>(row), p);
+    WeightsOfRow w;
+    WeighNine(TapsOfRow(s, at), p, at.count, w);
+    SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
+    for (int i = 0; i < at.count; ++i) {
+        if (!ReachFar(at.own, i)) continue;
+        ptrdiff_t offset[4];
+        float fx[4], fy[4];
+        for (int k = 0; k < 4; ++k) {
+            const Tap tap = OwnTap(at.own, i, k);
+            const float x = p.fx[i] - 0.5f + tap.x, y = p.fy[i] - 0.5f + tap.y;
+            const float tx = std::floor(x), ty = std::floor(y);
+            offset[k] = p.offset[i] + static_cast<int>(ty) * row + static_cast<int>(tx) * channels;
+            fx[k] = x - tx;
+            fy[k] = y - ty;
+        }
+        for (int c = 0; c < channels; c += kQuad) {
+            auto sum = Bilinear<T, kChannels>(origin + offset[0] + c, row, channels, fx[0], fy[0]);
+            for (int k = 1; k < 4; ++k)
+                sum =
+                    hn::Add(sum, Bilinear<T, kChannels>(origin + offset[k] + c, row, channels, fx[k], fy[k]));
+            HWY_ALIGN float v[kQuad];
+            hn::Store(hn::Mul(sum, hn::Set(d, 0.25f)), d, v);
+            std::memcpy(out + i * channels + c, v,
+                        sizeof(float) * static_cast<size_t>(HWY_MIN(kQuad, channels - c)));
+        }
+    }
+}
+
 /// Catmull-Rom weights of the four texels about a fraction f.
 HWY_INLINE void CubicWeights(float f, float* w) {
     const float g = 1 - f;
@@ -228,17 +402,33 @@ HWY_INLINE bool TapsLieTogether(const Texels& s) {
     return all;
 }
 
+/// Finds the positions of a tap that each pixel has for itself; those that lie together are one in their middle.
+HWY_INLINE void LocateOwn(const Offsets& at, int k, int channels, int32_t row, Positions<kRowRoom>& p) {
+    HWY_ALIGN float x[kRowRoom] = {}, y[kRowRoom] = {};
+    for (int i = 0; i < at.count; ++i) {
+        const Tap tap = OwnTap(at.own, i, k), other = OwnTap(at.own, i, k ^ 1);
+        const bool together = HWY_MAX(HWY_MAX(std::fabs(tap.x), std::fabs(tap.y)),
+                                      HWY_MAX(std::fabs(other.x), std::fabs(other.y))) < kSameTap;
+        x[i] = at.x[i] + (together ? 0 : tap.x);
+        y[i] = at.y[i] + (together ? 0 : tap.y);
+    }
+    Locate({x, y, at.count, at.whole_x, at.whole_y}, 0, at.count, Tap{}, 0.5f, channels, row, p);
+}
+
 /// The channels of a row that came out infinite or as no numbers, again, as weightless.h says.
 void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const int bytes = size_of(s.type), count = at.count * s.channels, side = is_cubic(s.kernel) ? 4 : 2;
     const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * bytes;
     const auto row = static_cast<int32_t>(s.row_stride / bytes);
     std::vector<double> sum(static_cast<size_t>(count));
-    const bool together = TapsLieTogether(s);
-    const int taps = together ? 1 : s.tap_count;
+    const bool own = at.own.x_i, together = !own && TapsLieTogether(s);
+    const int taps = own ? 4 : together ? 1 : s.tap_count;
     for (int tap = 0; tap < taps; ++tap) {
         Positions<kRowRoom> p;
-        Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
+        if (own)
+            LocateOwn(at, tap, s.channels, row, p);
+        else
+            Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
         for (int i = 0; i < at.count; ++i) {
             float wx[4], wy[4];
             KernelWeights(s.kernel, p.fx[i], wx);
@@ -305,8 +495,12 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out) {
     if (s.kernel == Kernel::bicubic_clamped) return SampleBicubic<T, true>(s, at, out);
     const auto with = [&](auto channels) {
         constexpr int k = decltype(channels)::value;
-        if (s.tap_count == 1)
+        if (at.own.x_i)
+            SampleOwn<T, k>(s, at, out);
+        else if (s.tap_count == 1)
             SampleBilinear<T, k>(s, at, out);
+        else if (ReadNine(s))
+            SampleNine<T, k>(s, at, out);
         else
             SampleTaps<T, k>(s, at, out);
     };
@@ -419,7 +613,7 @@ void DrawBilinear(const Drawing& to) {
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int count = to.end - to.begin;
-    const RowLocator<T, kChannels> locator(to);
+    const RowLocator<T, kChannels> locator(to, 0.5f);
     Positions<kRowRoom> positions[kRows];
     HWY_ALIGN float values[2][kRowRoom * kChannels];
 
@@ -440,9 +634,38 @@ void DrawBilinear(const Drawing& to) {
     InStages(to, locate, sample, store);
 }
 
+/// Taps that read nine texels, three or four channels.
+template <class T, int kChannels>
+void DrawNine(const Drawing& to) {
+    const Texels& s = to.texels;
+    const int count = to.end - to.begin;
+    const TapsOfRow taps(s, {});
+    const RowLocator<T, kChannels> locator(to, 0);
+    Positions<kRowRoom> positions[kRows];
+    WeightsOfRow weights;
+    HWY_ALIGN float values[2][kRowRoom * kChannels];
+
+    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j % kRows]); };
+    const auto sample = [&](int j) HWY_ATTR {
+        const Positions<kRowRoom>& p = positions[j % kRows];
+        WeighNine(taps, p, count, weights);
+        SampleNineRow<T, kChannels>(s, p.offset, count, weights, values[j & 1]);
+    };
+    const auto store = [&](int j) HWY_ATTR {
+        MendRow(to, j, values[j & 1]);
+        StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
+                 to.to + (j - to.row_begin) * to.row_stride);
+    };
+    InStages(to, locate, sample, store);
+}
+
 template <class T>
 void DrawTyped(const Drawing& to) {
     const Texels& s = to.texels;
+    if (ReadNine(s) && kQuad == 4) {
+        if (s.channels == 3) return DrawNine<T, 3>(to);
+        if (s.channels == 4) return DrawNine<T, 4>(to);
+    }
     if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
         if (s.channels == 3) return DrawBilinear<T, 3>(to);
         if (s.channels == 4) return DrawBilinear<T, 4>(to);

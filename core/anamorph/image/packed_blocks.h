@@ -14,6 +14,11 @@
 // texels. Where no two of the four texels differ by more than D levels, moving the point costs at most
 // (|e1| + |e2|) 2^-14 D, and the mixed difference is at most 2 D: together 2^-13 D, at most 255 / 8192 < 1/32 levels.
 //
+// Taps that read nine texels (nine_texels-inl.h) give the eight around the middle one weights in float, each rounded to a
+// multiple of 2^-14, and the middle one what is left, but not less than 0. So the sum is off by the rounding of each weight, at
+// most 2^-15 (and 2^-22 for what floats lost), times what its texel differs by from the middle one, at most 255: 8 * 255 * 2^-15
+// < 1/15 levels. Where that made the eight more than 1, by 4 units at most, a pixel is at most 255.1, which is 255.
+//
 // uint16 and half are filtered in float, by the formulas of block_sampler.cpp and with the same bits.
 #pragma once
 

@@ -10,6 +10,7 @@
 #include "hwy/highway.h"
 
 #include "anamorph/image/block_rows-inl.h"
+#include "anamorph/image/nine_texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
@@ -45,6 +46,41 @@ constexpr int kWeightBits = 14;
 struct WeightedRow {
     HWY_ALIGN int32_t offset[kRowRoom], above[kRowRoom], below[kRowRoom];
 };
+
+/// A row of pixels that read nine texels each: the element offset of the one in the middle, and their weights as pairs of
+/// 16 bits. Two texels of each row, from the left; then the right ones of the upper two rows; then that of the lowest.
+struct NineWeightedRow {
+    HWY_ALIGN int32_t pair[5][kRowRoom];
+};
+
+/// Weights of nine texels in whole numbers. None is negative, and but for that they add up to 1.
+HWY_INLINE void WeighNine(const TapsOfRow& taps, const Positions<kRowRoom>& p, int count,
+                          NineWeightedRow& to) {
+    const Floats d;
+    const Ints di;
+    const auto half = hn::Set(d, 0.5f), one = hn::Set(d, static_cast<float>(1 << kWeightBits));
+    const auto whole = [&](hn::Vec<Floats> w) HWY_ATTR { return hn::NearestInt(hn::Mul(w, one)); };
+    const auto two = [&](hn::Vec<Ints> low, hn::Vec<Ints> high)
+                         HWY_ATTR { return hn::Or(low, hn::ShiftLeft<16>(high)); };
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        const EightWeights w =
+            taps.Weights(hn::Sub(hn::Load(d, p.fx + i), half), hn::Sub(hn::Load(d, p.fy + i), half), i);
+        const auto zero = hn::Zero(d);
+        // Sums of four may have lost so much that they are below 0.
+        const auto above_left = whole(w.above_left), above = whole(hn::Max(w.above, zero)),
+                   above_right = whole(w.above_right), left = whole(hn::Max(w.left, zero)),
+                   right = whole(hn::Max(w.right, zero)), below_left = whole(w.below_left),
+                   below = whole(hn::Max(w.below, zero)), below_right = whole(w.below_right);
+        const auto around = hn::Add(hn::Add(hn::Add(above_left, above), hn::Add(above_right, left)),
+                                    hn::Add(hn::Add(right, below_left), hn::Add(below, below_right)));
+        const auto middle = hn::Max(hn::Sub(hn::Set(di, 1 << kWeightBits), around), hn::Zero(di));
+        hn::Store(two(above_left, above), di, to.pair[0] + i);
+        hn::Store(two(left, middle), di, to.pair[1] + i);
+        hn::Store(two(below_left, below), di, to.pair[2] + i);
+        hn::Store(two(above_right, right), di, to.pair[3] + i);
+        hn::Store(below_right, di, to.pair[4] + i);
+    }
+}
 
 /// Where points fall: between the texels left and right of the whole number r next to x, whose middles are at
 /// r - 1/2 and r + 1/2, and so for y.
@@ -108,6 +144,22 @@ HWY_INLINE void SampleGroup(const uint8_t* origin, const uint8_t* next_row, cons
                                        q[0] * (below & 0xffff) + q[kChannels] * (below >> 16) + half) >>
                                       kWeightBits);
 }
+
+template <int kChannels>
+HWY_INLINE void SampleNine(const uint8_t* origin, ptrdiff_t row, const int32_t* offset,
+                           const NineWeightedRow& w, int i, uint8_t* HWY_RESTRICT out) {
+    const uint8_t* p = origin + offset[i] - kChannels;
+    for (int c = 0; c < kChannels; ++c, ++p) {
+        int32_t sum = 1 << (kWeightBits - 1);
+        for (int j = 0; j < 3; ++j) {
+            const uint8_t* texel = p + (j - 1) * row;
+            const int32_t two = w.pair[j][i], right = j < 2 ? w.pair[3][i] >> (16 * j) : w.pair[4][i];
+            sum += texel[0] * (two & 0xffff) + texel[kChannels] * (two >> 16) +
+                   texel[2 * kChannels] * (right & 0xffff);
+        }
+        out[c] = static_cast<uint8_t>(sum >> kWeightBits);
+    }
+}
 #else
 // Four channels of a pixel fill a block of 16 bytes; a vector has one such block, or two. Pixel k of a group stands in
 // its lower block, pixel k + 4 in its upper one, so that Broadcast<k> gives both their weights.
@@ -165,18 +217,11 @@ HWY_INLINE hn::Vec<hn::Repartition<uint16_t, Sums>> Rounded(hn::Vec<Sums> a, hn:
     return hn::AverageRound(twice, hn::Zero(d));
 }
 
-/// Draws a group of pixels to `out`, and 4 bytes behind it.
-template <int kChannels>
-HWY_INLINE void SampleGroup(const uint8_t* origin, const uint8_t* next_row, const WeightedRow& at, int i,
-                            uint8_t* HWY_RESTRICT out) {
-    const Sums d;
+/// Four sums of a group, rounded, to `out`, and 4 bytes behind them.
+template <int kChannels, class V>
+HWY_INLINE void StoreGroup(V v0, V v1, V v2, V v3, uint8_t* HWY_RESTRICT out) {
     const Bytes d8;
-    const auto above = hn::Load(d, at.above + i), below = hn::Load(d, at.below + i);
-    const int32_t* offset = at.offset + i;
-    const auto a = Rounded(WeightedSum<kChannels, 0>(origin, next_row, offset, above, below),
-                           WeightedSum<kChannels, 1>(origin, next_row, offset, above, below));
-    const auto b = Rounded(WeightedSum<kChannels, 2>(origin, next_row, offset, above, below),
-                           WeightedSum<kChannels, 3>(origin, next_row, offset, above, below));
+    const auto a = Rounded(v0, v1), b = Rounded(v2, v3);
     // Channel by channel the bytes of pixels 0, 2, 1, 3.
     const auto mixed = hn::BitCast(d8, hn::Or(a, hn::ShiftLeft<8>(b)));
     if constexpr (kChannels == 4) {
@@ -193,6 +238,61 @@ HWY_INLINE void SampleGroup(const uint8_t* origin, const uint8_t* next_row, cons
         } else
             hn::StoreU(pixels, half, out);
     }
+}
+
+/// Draws a group of pixels to `out`, and 4 bytes behind it.
+template <int kChannels>
+HWY_INLINE void SampleGroup(const uint8_t* origin, const uint8_t* next_row, const WeightedRow& at, int i,
+                            uint8_t* HWY_RESTRICT out) {
+    const Sums d;
+    const auto above = hn::Load(d, at.above + i), below = hn::Load(d, at.below + i);
+    const int32_t* offset = at.offset + i;
+    StoreGroup<kChannels>(WeightedSum<kChannels, 0>(origin, next_row, offset, above, below),
+                          WeightedSum<kChannels, 1>(origin, next_row, offset, above, below),
+                          WeightedSum<kChannels, 2>(origin, next_row, offset, above, below),
+                          WeightedSum<kChannels, 3>(origin, next_row, offset, above, below), out);
+}
+
+/// From three texels of two rows of bytes, the right one's channel of either row side by side, as 16 bits.
+template <int kChannels>
+HWY_INLINE hn::Vec<Words> RightOnes(hn::Vec<Bytes> upper, hn::Vec<Bytes> lower) {
+    constexpr uint8_t k = 2 * kChannels, no = 0x80;
+    HWY_ALIGN static constexpr uint8_t kEven[16] = {k,     no, no, no, k + 1, no, no, no,
+                                                    k + 2, no, no, no, k + 3, no, no, no};
+    HWY_ALIGN static constexpr uint8_t kOdd[16] = {no, no, k,     no, no, no, k + 1, no,
+                                                   no, no, k + 2, no, no, no, k + 3, no};
+    const Bytes d;
+    return hn::BitCast(Words(), hn::Or(hn::TableLookupBytesOr0(upper, hn::LoadDup128(d, kEven)),
+                                       hn::TableLookupBytesOr0(lower, hn::LoadDup128(d, kOdd))));
+}
+
+/// Pixels k and k + 4 of a group, from nine texels each, in units of 2^-kWeightBits.
+template <int kChannels, int k>
+HWY_INLINE hn::Vec<Sums> NineSum(const uint8_t* origin, ptrdiff_t row, const int32_t* offset,
+                                 const NineWeightedRow& w, int i) {
+    const Words d;
+    const uint8_t *p = origin + offset[k] - kChannels, *q = origin + offset[kGroup - 4 + k] - kChannels;
+    const auto upper = LoadBlocks(Bytes(), p - row, q - row), middle = LoadBlocks(Bytes(), p, q),
+               lower = LoadBlocks(Bytes(), p + row, q + row);
+    const auto weights = [&](int n) HWY_ATTR {
+        return hn::BitCast(d, hn::Broadcast<k>(hn::Load(Sums(), w.pair[n] + i)));
+    };
+    const auto left = hn::Add(AddPairs(Neighbours<kChannels>(upper), weights(0)),
+                              AddPairs(Neighbours<kChannels>(middle), weights(1)));
+    const auto right = hn::Add(AddPairs(Neighbours<kChannels>(lower), weights(2)),
+                               AddPairs(RightOnes<kChannels>(upper, middle), weights(3)));
+    const auto last = AddPairs(RightOnes<kChannels>(lower, hn::Zero(Bytes())), weights(4));
+    return hn::Add(hn::Add(left, right), last);
+}
+
+/// Draws a group of pixels that read nine texels each to `out`, and 4 bytes behind it.
+template <int kChannels>
+HWY_INLINE void SampleNine(const uint8_t* origin, ptrdiff_t row, const int32_t* offset,
+                           const NineWeightedRow& w, int i, uint8_t* HWY_RESTRICT out) {
+    StoreGroup<kChannels>(NineSum<kChannels, 0>(origin, row, offset + i, w, i),
+                          NineSum<kChannels, 1>(origin, row, offset + i, w, i),
+                          NineSum<kChannels, 2>(origin, row, offset + i, w, i),
+                          NineSum<kChannels, 3>(origin, row, offset + i, w, i), out);
 }
 
 #endif
@@ -220,6 +320,34 @@ void DrawBytes(const Drawing& to) {
         for (int i = 0; i < count; i += kGroup)
             SampleGroup<kChannels>(origin, origin + s.row_stride, rows[j % kRows], i,
                                    values[j & 1] + i * kChannels);
+    };
+    const auto store = [&](int j) HWY_ATTR {
+        StreamRow(values[j & 1], count * kChannels, to.to + (j - to.row_begin) * to.row_stride);
+    };
+    InStages(to, locate, sample, store);
+}
+
+/// The same with taps that read nine texels.
+template <int kChannels>
+void DrawNineBytes(const Drawing& to) {
+    const Texels& s = to.texels;
+    const auto* origin = reinterpret_cast<const uint8_t*>(s.texels);
+    const int count = to.end - to.begin;
+    const TapsOfRow taps(s, {});
+    const RowLocator<uint8_t, kChannels> locator(to, 0);
+    Positions<kRowRoom> positions[kRows];
+    NineWeightedRow weights;
+    HWY_ALIGN uint8_t values[2][kRowRoom * kChannels + 16];
+
+    const auto locate = [&](int j) HWY_ATTR {
+        locator.Row(j, positions[j % kRows]);
+        FillGroup(positions[j % kRows].offset, count, kGroup);
+    };
+    const auto sample = [&](int j) HWY_ATTR {
+        const Positions<kRowRoom>& p = positions[j % kRows];
+        WeighNine(taps, p, count, weights);
+        for (int i = 0; i < count; i += kGroup)
+            SampleNine<kChannels>(origin, s.row_stride, p.offset, weights, i, values[j & 1] + i * kChannels);
     };
     const auto store = [&](int j) HWY_ATTR {
         StreamRow(values[j & 1], count * kChannels, to.to + (j - to.row_begin) * to.row_stride);
@@ -335,7 +463,7 @@ void DrawFloats(const Drawing& to) {
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int count = to.end - to.begin;
-    const RowLocator<T, kChannels> locator(to);
+    const RowLocator<T, kChannels> locator(to, 0.5f);
     Positions<kRowRoom> positions[kRows];
     HWY_ALIGN T values[2][kRowRoom * kChannels + 32];
 
@@ -362,6 +490,11 @@ void DrawFloats(const Drawing&) {}
 
 bool DrawPacked(const Drawing& drawing) {
     const bool three = drawing.texels.channels == 3;
+    if (drawing.texels.tap_count > 1) {
+        if (drawing.type != PixelType::uint8 || !ReadNine(drawing.texels)) return false;
+        three ? DrawNineBytes<3>(drawing) : DrawNineBytes<4>(drawing);
+        return true;
+    }
     switch (drawing.type) {
         case PixelType::uint8:
             three ? DrawBytes<3>(drawing) : DrawBytes<4>(drawing);
@@ -390,7 +523,7 @@ HWY_EXPORT(DrawPacked);
 bool draw_packed_block(const Drawing& drawing) {
     const Texels& s = drawing.texels;
     const bool packed = s.type == drawing.type && drawing.scale == 1 && s.kernel == Kernel::bilinear &&
-                        s.tap_count == 1 && s.taps[0].x == 0 && s.taps[0].y == 0 &&
+                        (s.tap_count > 1 || (s.taps[0].x == 0 && s.taps[0].y == 0)) &&
                         (s.channels == 3 || s.channels == 4);
     return packed && HWY_DYNAMIC_DISPATCH(DrawPacked)(drawing);
 }
