@@ -235,6 +235,53 @@ TEST(Pyramid, ReadsWhatItNeedsOnce) {
     EXPECT_EQ(noise.texels_read, 2048 * 1024);
 }
 
+/// Noise in a part of a picture, and nothing around it.
+class NoiseInWindow final : public Source {
+  public:
+    NoiseInWindow(Noise& noise, const Box& window, bool says)
+        : m_noise(noise), m_window(window), m_says(says) {
+        const Size all = noise.size(0);
+        for (int y = 0; y < all.height; ++y)
+            for (int x = 0; x < all.width; ++x)
+                if (!(x >= window.x0 && x < window.x1 && y >= window.y0 && y < window.y1))
+                    std::fill_n(noise.at(x, y), noise.channels() * size_of(noise.type()), std::byte{});
+    }
+    PixelType type() const noexcept override { return m_noise.type(); }
+    int channels() const noexcept override { return m_noise.channels(); }
+    int levels() const noexcept override { return 1; }
+    Size size(int level) const noexcept override { return m_noise.size(level); }
+    Box data_window() const noexcept override { return m_says ? m_window : extent(0); }
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override {
+        return m_noise.read(level, box, texels, row_stride);
+    }
+
+  private:
+    Noise& m_noise;
+    Box m_window;
+    bool m_says;
+};
+
+TEST(Pyramid, WhatAnImageHasNothingOfIsNotRead) {
+    for (const Box& window :
+         {Box{0, 0, 1, 1}, Box{700, 500, 701, 502}, Box{256, 256, 512, 512}, Box{1498, 0, 1499, 1100}}) {
+        Noise noise(1499, 1100, 2, PixelType::uint16, -1, false);
+        const NoiseInWindow silent(noise, window, false), saying(noise, window, true);
+        const Pyramid whole(silent), part(saying);
+        for (int level = 1; level < whole.levels(); ++level) {
+            const Size size = whole.size(level);
+            std::vector<std::byte> a(static_cast<std::size_t>(size.width * size.height * 4)), b(a.size());
+            ASSERT_TRUE(whole.read(level, {0, 0, size.width, size.height}, a.data(), size.width * 4));
+            const std::int64_t before = noise.texels_read;
+            ASSERT_TRUE(part.read(level, {0, 0, size.width, size.height}, b.data(), size.width * 4));
+            EXPECT_EQ(a, b) << level;
+            if (level == 1) {
+                EXPECT_LT(noise.texels_read - before, before / 2);
+            }
+        }
+    }
+}
+
 TEST(Pyramid, APreparedViewIsWhatIsRead) {
     const Noise noise(700, 500, 3, PixelType::half);
     const Pyramid pyramid(noise), other(noise);

@@ -224,6 +224,24 @@ TEST_F(LensRecipe, SaysWhatItsPictureIs) {
     // Twice as many pixels of the same size show more; what has no field of view says none.
     EXPECT_EQ(said("plate.exr.lens?size=192x128&" + lens).substr(0, 21), "rectilinear fov=108.9");
     EXPECT_EQ(said("plate.exr.lens?lens=3de4:k1=-0.1"), "");
+    // Others do not need theirs, but say it where it is known.
+    EXPECT_EQ(said("plate.exr.lens?lens=3de4:k1=-0.1&fov=84"), "rectilinear fov=84");
+    OIIO::ImageBuf plate("plate.exr");
+    plate.read(0, 0, true);
+    plate.specmod().attribute("panoramaProjection", "rectilinear fov=84");
+    ASSERT_TRUE(plate.write("said.exr"));
+    EXPECT_EQ(said("said.exr.lens?lens=ptlens:b=-0.02"), "rectilinear fov=84");
+    EXPECT_EQ(said("said.exr.lens?lens=3de4:k1=-0.1&fov=60"), "rectilinear fov=60");
+    EXPECT_EQ(said("said.exr.lens?lens=division:k1=-0.1&mode=distort"),
+              "rectilinear fov=84 lens=division:k1=-0.1");
+    EXPECT_EQ(said("said.exr.lens?lens=3de4:k1=-0.1&mode=distort&size=all"), "");
+    EXPECT_EQ(read_floats("said.exr.lens?lens=3de4:k1=-0.1&fov=60"),
+              read_floats("plate.exr.lens?lens=3de4:k1=-0.1"));
+    EXPECT_THAT(open_error("plate.exr.lens?lens=3de4:k1=-0.1&fov=180"), HasSubstr("fov=180"));
+    ASSERT_EQ(run("oiiotool 'said.exr.lens?mode=distort&lens=3de4:k1=-0.1' -o bent_by_size.exr").status, 0);
+    EXPECT_EQ(read_floats("bent_by_size.exr.pano?fov=60&size=40x30"),
+              read_floats(
+                  "bent_by_size.exr.pano?from=rectilinear&srcfov=84&srclens=3de4:k1=-0.1&fov=60&size=40x30"));
     ASSERT_EQ(run("oiiotool 'plate.exr.lens?mode=distort&" + lens + "' -o bent.exr").status, 0);
     EXPECT_EQ(
         read_floats("bent.exr.pano?fov=60&size=40x30"),

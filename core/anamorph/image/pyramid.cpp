@@ -227,6 +227,8 @@ const SummedAreas* Pyramid::summed_areas() const noexcept try {
 
 bool Pyramid::make_tile(int level, const Box& tile) const {
     const Level& to = at(level);
+    // What the image has nothing of is 0 as it stands, however large its picture is.
+    if (intersection(texels_over(tile, to.size, size(0)), data_window()).empty()) return true;
     const Size finer = size(level - 1);
     const std::vector<TexelSpan> across = spans_of(tile.x0, tile.x1, finer.width, to.size.width);
     const std::vector<TexelSpan> down = spans_of(tile.y0, tile.y1, finer.height, to.size.height);

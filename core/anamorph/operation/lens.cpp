@@ -41,8 +41,9 @@ ParameterTable make_lens_table() {
              "image says of itself"),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture that was taken through the lens, without the "
-                     "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
-                     "what the image says of itself, for brown also by Exif's focal length")),
+                     "distortion; brown (below 180) and kb4, whose unit is the focal length, need it, "
+                     "pictures of others only say it; by default what the image says of itself, for brown "
+                     "also by Exif's focal length")),
         extent,
         overscan(),
         subimage(),
@@ -69,7 +70,7 @@ ParameterTable make_lens_table() {
 /// The picture as the lens gives it, and what was taken for its field of view, if that was not said outright.
 struct Observed {
     Chart chart;
-    bool has_fov = false;  ///< is its field of view known?
+    std::optional<double> fov = {};  ///< its field of view, where that is known
     Attributes says = {};
 };
 
@@ -101,10 +102,12 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     const bool fisheye = model.kind == LensModel::Kind::kb4;
     const bool by_focal_length = fisheye || model.kind == LensModel::Kind::brown;
     const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
+    const auto chart = [&](double fov) {
+        return Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model,
+                     vertical_field(projection, size, fov, facts.pixel_aspect));
+    };
     const auto with = [&](double fov, Attributes says = {}) {
-        return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model,
-                              vertical_field(projection, size, fov, facts.pixel_aspect)),
-                        by_focal_length, std::move(says)};
+        return Observed{chart(fov), fov, std::move(says)};
     };
     // Its focal length is a0.
     if (model.kind == LensModel::Kind::ocam) {
@@ -113,12 +116,19 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
             fov_of_plane_width(Projection::stereographic, size.width / std::fabs(model.values[0]));
         return {Chart(Projection::stereographic, size.width, size.height, fov, PixelSpacing::edges, "", 1,
                       model, vertical_field(Projection::stereographic, size, fov, facts.pixel_aspect)),
-                true};
+                fov};
     }
-    // Of the other models nothing depends on it.
-    if (!by_focal_length) return with(Chart::default_fov(projection));
-    if (values.given("fov")) return with(values.number("fov"));
-    if (facts.fov && facts.projection == projection) return with(*facts.fov);
+    std::optional<double> known;
+    if (values.given("fov"))
+        known = values.number("fov");
+    else if (facts.fov && facts.projection == projection)
+        known = facts.fov;
+    // Of the other models nothing depends on it, but what is said of the picture.
+    if (!by_focal_length) {
+        if (known) static_cast<void>(chart(*known));
+        return {chart(Chart::default_fov(projection)), known};
+    }
+    if (known) return with(*known);
     if (!fisheye && facts.focal_length) {
         const double fov = flat_field_of_view(size.width, *facts.focal_length);
         Attributes says;
@@ -148,15 +158,20 @@ std::shared_ptr<const Attributes> said_of(Observed& observed, LensMode mode, con
                                           double pixel_aspect) {
     auto says = std::make_shared<Attributes>(std::move(observed.says));
     const Chart& chart = observed.chart;
-    if (!observed.has_fov) return says;
+    if (!observed.fov) return says;
     const LensModel& model = chart.lens()->model();
-    const double width = plane_width(chart.projection(), chart.fov()) / chart.width() * target.width,
+    const double width = plane_width(chart.projection(), *observed.fov) / chart.width() * target.width,
                  fov = fov_of_plane_width(chart.projection(), width);
     // A picture that shows more than its projection can has no field of view, nor one whose lens's centre stays beside its middle.
     const bool is_centred = model.values[model.values.size() - 2] == 0 && model.values.back() == 0;
     if (!(plane_width(chart.projection(), fov) >= width * (1 - 1e-9)) || !is_centred) return says;
+    // Lenses whose unit is a length of the picture are others in a picture of another size.
+    const bool is_by_size = model.kind != LensModel::Kind::brown && model.kind != LensModel::Kind::kb4 &&
+                            model.kind != LensModel::Kind::ocam;
+    if (mode == LensMode::distort && is_by_size && !(target == Size{chart.width(), chart.height()}))
+        return says;
     const Chart shown(chart.projection(), target.width, target.height,
-                      target.width == chart.width() ? chart.fov() : fov, PixelSpacing::edges, "", 1,
+                      target.width == chart.width() ? *observed.fov : fov, PixelSpacing::edges, "", 1,
                       mode == LensMode::distort ? model : LensModel{},
                       vertical_field(chart.projection(), target, fov, pixel_aspect));
     for (Attribute& attribute : panorama_attributes(shown, false)) says->push_back(std::move(attribute));
