@@ -26,3 +26,4 @@
 #include "anamorph/figure/outline/outline.h"
 #include "anamorph/figure/outline/outline_view.h"
 #include "anamorph/figure/outline/spheres.h"
+#include "anamorph/figure/outline/viewport.h"

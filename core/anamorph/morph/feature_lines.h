@@ -38,6 +38,7 @@ class Features {
     /// What was added by one call, as it was given: the two ends of a line, the vertices of a polyline, or the control points of a
     /// curve, for each shape.
     struct Given {
+        /// What its points are.
         enum class Kind { line, polyline, curve };
         Kind kind = Kind::line;
         std::vector<std::vector<Point<double>>> points;

@@ -52,11 +52,12 @@ Features parse_features_svg(std::string_view text, std::string_view name);
 /// Reads features in the format that the ending of the name says: CSV for .csv, SVG for .svg, else JSON.
 Features parse_features_file(std::string_view text, std::string_view name);
 
-/// Writes features in these formats, as their parsers read them: the same numbers, to the bit. CSV has two shapes, lines and weights and
-/// nothing else, and SVG draws each layer over the picture that it belongs to (Features::picture), in its pixels. Throws Error where a format lacks what
-/// the features have.
+/// Writes features as JSON, as parse_features_json() reads them: the same numbers, to the bit.
 std::string features_json(const Features& features);
+/// Writes features as CSV, to the bit. Throws Error where they have other than two shapes, or more than lines and weights.
 std::string features_csv(const Features& features);
+/// Writes features as SVG, to the bit: each layer lies over the picture that it belongs to (Features::picture), in its pixels. Throws
+/// Error where the format lacks what they have.
 std::string features_svg(const Features& features);
 /// Writes features in the format that the ending of the name says.
 std::string features_text(const Features& features, std::string_view name);

@@ -15,6 +15,7 @@ struct Viewport {
     glm::dvec2 middle{0.0},
         half_axes{1.0};  ///< pixels from the upper left of the page, y down; half-axes positive
 
+    /// Is a point of the page within it?
     bool holds(const glm::dvec2& point) const;
 };
 
