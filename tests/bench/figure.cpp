@@ -22,13 +22,14 @@
 #include "../core/figure_outline_cases.h"
 #include "anamorph/figure/outline/outline.h"
 #include "bench.h"
+#include "figure_depth_tests.h"
 #include "pixels.h"
 
 namespace anamorph::bench {
 using namespace figure;
 namespace {
 
-constexpr int kFrames = 512, kFigures = 3, kMany = 10000;
+constexpr int kFrames = 512, kFigures = 3, kMany = 10000, kSamples = 100;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 using Frames = std::vector<std::vector<Ellipsoid>>;
@@ -81,31 +82,6 @@ View window(double eye_distance) {
                      away = glm::normalize(glm::cross(right, glm::dvec3(0, 1, 0)));
     view.rotation = glm::transpose(glm::dmat3(right, glm::cross(away, right), away));
     return view;
-}
-
-/// The plain loop: is a point of the limb in front of all ellipsoids? Orthographic, along z of the view.
-std::int64_t hidden_samples(const std::vector<Ellipsoid>& bodies, const View& view) {
-    OutlineOptions options;
-    options.hide = false;
-    const Outlines limbs = outlines(bodies, view, options);
-    const glm::dvec3 ray = glm::transpose(view.rotation)[2];
-    std::int64_t hidden = 0;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (int k = 0; k < 100; ++k) {
-            const glm::dvec3 p = limbs.bodies[i].limb(kTurn * k / 100);
-            for (std::size_t j = 0; j < bodies.size(); ++j) {
-                if (j == i) continue;
-                const glm::dmat3 own = glm::transpose(bodies[j].rotation);
-                const glm::dvec3 u = own * (p - bodies[j].center) / bodies[j].axes,
-                                 v = own * ray / bodies[j].axes;
-                const double a = glm::dot(v, v), b = glm::dot(u, v), c = glm::dot(u, u) - 1;
-                if (b * b > a * c && -b - std::sqrt(b * b - a * c) < 0) {
-                    ++hidden;
-                    break;
-                }
-            }
-        }
-    return hidden;
 }
 
 struct Contender {
@@ -166,7 +142,7 @@ void run(const Settings& settings, Report& report) {
     std::vector<Contender> contenders;
     contenders.push_back({"walk_66", "depth_tests",
                           [&] {
-                              for (const auto& bodies : few) hidden += hidden_samples(bodies, flat);
+                              for (const auto& bodies : few) hidden += hidden_samples(bodies, flat, kSamples);
                           },
                           static_cast<double>(66 * few.size())});
     contenders.push_back(ours("outlines", frames, flat, {}, "walk_66"));

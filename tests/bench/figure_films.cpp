@@ -24,6 +24,7 @@
 #include "anamorph/figure/language/script.h"
 #include "anamorph/figure/outline/drawing.h"
 #include "bench.h"
+#include "figure_depth_tests.h"
 
 namespace anamorph::bench {
 using namespace figure;
@@ -118,33 +119,6 @@ std::vector<Ellipsoid> shapes_of(const FigureFrame& frame) {
     return shapes;
 }
 
-/// The plain loop: of how many points of the limbs does an ellipsoid lie before?
-std::int64_t hidden_samples(const FigureFrame& frame) {
-    const View view = view_of(frame);
-    const std::vector<Ellipsoid> bodies = shapes_of(frame);
-    OutlineOptions options;
-    options.hide = false;
-    const Outlines limbs = outlines(bodies, view, options);
-    const glm::dvec3 ray = glm::transpose(view.rotation)[2];
-    std::int64_t hidden = 0;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (int k = 0; k < kSamples; ++k) {
-            const glm::dvec3 p = limbs.bodies[i].limb(2 * std::numbers::pi * k / kSamples);
-            for (std::size_t j = 0; j < bodies.size(); ++j) {
-                if (j == i) continue;
-                const glm::dmat3 own = glm::transpose(bodies[j].rotation);
-                const glm::dvec3 u = own * (p - bodies[j].center) / bodies[j].axes,
-                                 v = own * ray / bodies[j].axes;
-                const double a = glm::dot(v, v), b = glm::dot(u, v), c = glm::dot(u, u) - 1;
-                if (b * b > a * c && -b - std::sqrt(b * b - a * c) < 0) {
-                    ++hidden;
-                    break;
-                }
-            }
-        }
-    return hidden;
-}
-
 /// Every how many frames one is looked at closely.
 std::size_t stride_of(const std::vector<FigureFrame>& frames) {
     return std::max<std::size_t>(1, frames.size() / kSampledFrames);
@@ -189,7 +163,8 @@ void measure(const Film& film, const Settings& settings, Report& report) {
         {"depth_tests",
          [&] {
              for (std::size_t k = 0; k < frames.size(); k += stride_of(frames))
-                 sum += static_cast<std::size_t>(hidden_samples(frames[k]));
+                 sum += static_cast<std::size_t>(
+                     hidden_samples(shapes_of(frames[k]), view_of(frames[k]), kSamples));
          },
          sampled},
         {"perform", [&] { sum += frames_of(program).size(); }, bodies},

@@ -15,7 +15,6 @@ namespace anamorph {
 namespace {
 
 using Place = FeatureEditor::Place;
-using Selecting = FeatureEditor::Selecting;
 using Kind = Features::Given::Kind;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -18,7 +18,6 @@ namespace anamorph {
 namespace {
 
 using Place = MeshEditor::Place;
-using Selecting = MeshEditor::Selecting;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -5,6 +5,7 @@
 #include <vtkTextProperty.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +20,6 @@ namespace {
 
 /// Pixels of the window within which a point is hit, and the farthest that a click may slip.
 constexpr int kHit = 8, kSlip = 3;
-constexpr std::chrono::milliseconds kDoubleClick{400};
 constexpr unsigned long kEvents[] = {vtkCommand::LeftButtonPressEvent,
                                      vtkCommand::LeftButtonReleaseEvent,
                                      vtkCommand::MiddleButtonPressEvent,
@@ -77,9 +77,12 @@ EditWindow::~EditWindow() {
     m_panes[0]->renderer()->RemoveObserver(m_observer);
 }
 
-void EditWindow::took(std::chrono::steady_clock::time_point start) {
+void EditWindow::drew(std::chrono::steady_clock::time_point start, double max_error, double tol) {
     m_milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    m_off = std::isnan(max_error) ? "off as its machine is"
+                                  : "off by at most " + anamorph::shortest(static_cast<float>(max_error)) +
+                                        " px (tol " + anamorph::shortest(tol) + ")";
 }
 
 bool EditWindow::save() {
@@ -101,7 +104,7 @@ void EditWindow::update() {
 void EditWindow::write_status() {
     char time[32];
     std::snprintf(time, sizeof time, "%.1f ms", m_milliseconds);
-    m_status = std::string(time) + "   " + this->describe_error() + "   " + this->describe();
+    m_status = std::string(time) + "   " + m_off + "   " + this->describe();
     if (this->has_changes()) m_status += "   not saved";
     if (!m_error.empty()) m_status += "\n" + m_error;
     m_text->SetInput(m_status.c_str());
@@ -125,12 +128,10 @@ Selecting EditWindow::selecting() const {
                                          : Selecting::only;
 }
 
-bool EditWindow::is_second_click(const Display& at) {
-    const auto now = std::chrono::steady_clock::now();
-    const bool is_second = m_click && now - *m_click < kDoubleClick &&
-                           std::abs(at[0] - m_pressed[0]) <= kSlip && std::abs(at[1] - m_pressed[1]) <= kSlip;
-    m_click = is_second ? std::nullopt : std::optional(now);
-    return is_second;
+/// VTK counts presses that follow each other soon, wherever they are.
+bool EditWindow::is_second_click(const Display& at) const {
+    return m_interactor->GetRepeatCount() > 0 && std::abs(at[0] - m_pressed[0]) <= kSlip &&
+           std::abs(at[1] - m_pressed[1]) <= kSlip;
 }
 
 void EditWindow::press() {
@@ -220,9 +221,9 @@ void EditWindow::press_key() {
     const auto all = [&](const auto& body) { std::for_each(m_panes.begin(), m_panes.end(), body); };
     if (name == "q") return this->end();
     m_warned = false;
-    const bool was_saved = m_interactor->GetControlKey() && (name == "s" || name == "S");
+    const bool saves = m_interactor->GetControlKey() && (name == "s" || name == "S");
     this->guarded([&] {
-        if (m_interactor->GetControlKey() && !was_saved) return this->control_key(name);
+        if (m_interactor->GetControlKey() && !saves) return this->control_key(name);
         if (name == "f") return all([](const auto& pane) { pane->fit(); });
         if (name == "a") return this->select_in(i, {-1e300, -1e300, 1e300, 1e300}, Selecting::only);
         if (name == "Escape") {
@@ -233,9 +234,9 @@ void EditWindow::press_key() {
             m_gesture = Gesture::none;
             return this->show_band();
         }
-        if (!was_saved) this->key(name, i, m_panes[i]->to_picture(at));
+        if (!saves) this->key(name, i, m_panes[i]->to_picture(at));
     });
-    if (was_saved) this->save();
+    if (saves) this->save();
     this->render();
 }
 

@@ -21,17 +21,16 @@
 
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "anamorph/editing.h"
 #include "anamorph/geometry/bounds_tree.h"
 #include "pane.h"
 
 namespace anamorph_editor {
 
-/// How points are selected: these alone, these too, or each as it was not.
-enum class Selecting { only, more, other };
+using anamorph::Selecting;
 
 /// Replaces a file as a whole, or leaves it as it is. Throws Error.
 void write_file(const std::string& name, const std::string& text);
@@ -45,6 +44,7 @@ class EditWindow {
     vtkRenderWindow* window() { return m_window; }
     vtkRenderWindowInteractor* interactor() { return m_interactor; }
     Pane& pane(std::size_t i) { return *m_panes[i]; }
+    const Pane& pane(std::size_t i) const { return *m_panes[i]; }
     std::size_t panes() const { return m_panes.size(); }
 
     /// Saves the file. False where that fails, of which error() tells.
@@ -71,8 +71,6 @@ class EditWindow {
     virtual void draw(const std::vector<bool>& anew) = 0;
     /// What the line says beyond time and error.
     virtual std::string describe() const = 0;
-    /// The largest error of what was drawn last, as the line says it.
-    virtual std::string describe_error() const = 0;
 
     /// Selects the point that is nearest to a place, at most `within` pixels of the picture away. Of those that are selected
     /// already `only` changes nothing. False where there is none.
@@ -108,8 +106,9 @@ class EditWindow {
             return false;
         }
     }
-    /// Keeps the time since `start`.
-    void took(std::chrono::steady_clock::time_point start);
+    /// Says that the result was drawn, which began at `start`, and is off by `max_error` source pixels at most (NaN: not proven), of the
+    /// tolerance `tol`.
+    void drew(std::chrono::steady_clock::time_point start, double max_error, double tol);
     void set_saved() { m_saved = this->text(); }
     bool is_dragging() const { return m_gesture == Gesture::drag; }
     void render() { m_interactor->Render(); }
@@ -136,15 +135,15 @@ class EditWindow {
     Display mouse() const;
     Selecting selecting() const;
     void press_in_pane(const Display& at);
-    bool is_second_click(const Display& at);
+    bool is_second_click(const Display& at) const;
 
     std::string m_file, m_saved, m_status, m_error;
+    std::string m_off;  ///< how far the result is off at most, in words; empty before it is drawn
     double m_milliseconds = 0;
     bool m_ended = false, m_warned = false, m_forgotten = true;
     Gesture m_gesture = Gesture::none;
     std::size_t m_held = 0;  ///< the pane in which a button was pressed
     Display m_pressed{}, m_last{};
-    std::optional<std::chrono::steady_clock::time_point> m_click;
     std::vector<std::unique_ptr<Pane>> m_panes;
     std::vector<std::unique_ptr<Overlay>> m_bands;
     vtkNew<vtkCallbackCommand> m_observer;

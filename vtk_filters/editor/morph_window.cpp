@@ -29,12 +29,6 @@ struct Range {
 };
 constexpr Range kSliders[] = {{"t", 0, 1}, {"weight_a", 0, 50}, {"weight_b", 0, 4}, {"weight_p", 0, 2}};
 
-FeatureEditor::Selecting feature_selecting(Selecting how) {
-    return how == Selecting::only   ? FeatureEditor::Selecting::only
-           : how == Selecting::more ? FeatureEditor::Selecting::more
-                                    : FeatureEditor::Selecting::other;
-}
-
 Features opened_features(const DrawnRecipe& recipe, bool starts_empty) {
     const std::string& file = recipe.edited_file();
     const bool exists = anamorph::side_file_reader().exists(file);
@@ -168,13 +162,12 @@ void MorphWindow::draw_picture(bool anew) {
     const bool is_drawn = this->guarded([&] {
         const ReadyPicture ready = recipe.ready(text, pane.drawn_size());
         recipe.draw(ready, pane.pixels().box, pane.pixels());
-        m_max_error = ready.max_error();
+        this->drew(start, ready.max_error(), recipe.values().number("tol"));
     });
     recipe.values().set("weight_a", a);
     if (!is_drawn) throw Error(this->error());
     pane.show(pane.pixels().box);
     m_drawn = all;
-    this->took(start);
 }
 
 Point<double> MorphWindow::unit(std::size_t shape) const {
@@ -211,20 +204,13 @@ std::string MorphWindow::describe() const {
     return text;
 }
 
-std::string MorphWindow::describe_error() const {
-    if (std::isnan(m_max_error)) return "off as its machine is";
-    return "off by at most " + anamorph::shortest(static_cast<float>(m_max_error)) + " px (tol " +
-           anamorph::shortest(m_recipe.values().number("tol")) + ")";
-}
-
 bool MorphWindow::pick(std::size_t pane, const Point<double>& at, double within, Selecting how) {
     if (pane > 1) return false;
     const Point<double> unit = this->unit(pane);
     const auto place =
         m_editor.point_near(static_cast<int>(pane), {at.x * unit.x, at.y * unit.y}, within * unit.x);
     if (!place) return false;
-    if (how != Selecting::only || m_editor.selected().count(*place) == 0)
-        m_editor.select(*place, feature_selecting(how));
+    if (how != Selecting::only || m_editor.selected().count(*place) == 0) m_editor.select(*place, how);
     return true;
 }
 
@@ -232,8 +218,7 @@ void MorphWindow::select_in(std::size_t pane, const anamorph::Bounds& box, Selec
     if (pane > 1) return;
     const Point<double> unit = this->unit(pane);
     m_editor.select_in(static_cast<int>(pane),
-                       {box.x0 * unit.x, box.y0 * unit.y, box.x1 * unit.x, box.y1 * unit.y},
-                       feature_selecting(how));
+                       {box.x0 * unit.x, box.y0 * unit.y, box.x1 * unit.x, box.y1 * unit.y}, how);
 }
 
 void MorphWindow::drag(std::size_t pane, const Point<double>& by) {

@@ -39,7 +39,6 @@ class MorphWindow final : public EditWindow {
     std::string text() const override;
     void draw(const std::vector<bool>& anew) override;
     std::string describe() const override;
-    std::string describe_error() const override;
     bool pick(std::size_t pane, const Point<double>& at, double within, Selecting how) override;
     void select_in(std::size_t pane, const anamorph::Bounds& box, Selecting how) override;
     void select_none() override { m_editor.select_none(); }
@@ -74,7 +73,6 @@ class MorphWindow final : public EditWindow {
     int m_timer = 0;
     double m_way = 1;  ///< 1 where t grows, -1 where it falls
     std::string m_drawn;
-    double m_max_error = 0;
     struct Overlays {
         Overlay lines, points, selected;
     };

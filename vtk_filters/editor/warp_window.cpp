@@ -29,12 +29,6 @@ constexpr std::array<double, 3> kLatticeColor{0.55, 0.65, 0.75}, kEdgeColor{1, 0
 /// Half of the arms of the cross that a T-vertex is shown as, in pixels of the window.
 constexpr double kCross = 4;
 
-MeshEditor::Selecting mesh_selecting(Selecting how) {
-    return how == Selecting::only   ? MeshEditor::Selecting::only
-           : how == Selecting::more ? MeshEditor::Selecting::more
-                                    : MeshEditor::Selecting::other;
-}
-
 ControlMesh even_mesh(const Size& cells) {
     ControlMesh mesh;
     mesh.units = anamorph::Units::fractions;
@@ -148,7 +142,7 @@ std::string WarpWindow::text() const {
 ControlMesh WarpWindow::scaled_mesh() const {
     ControlMesh mesh = m_editor.mesh();
     const Size source = m_pulls ? m_to : m_from, picture = m_pulls ? m_from : m_to;
-    const bool is_whole = const_cast<WarpWindow*>(this)->pane(1).drawn_size() == picture;
+    const bool is_whole = this->pane(1).drawn_size() == picture;
     if (is_whole) return mesh;
     return std::get<ControlMesh>(anamorph::in_fractions({"mesh", mesh}, source, picture).shape);
 }
@@ -197,8 +191,7 @@ void WarpWindow::draw_picture(bool anew) {
     }
     m_drawn_mesh = std::move(map);
     m_drawn_text = std::move(text);
-    m_max_error = ready.max_error();
-    this->took(start);
+    this->drew(start, ready.max_error(), m_recipe.values().number("tol"));
 }
 
 void WarpWindow::draw_mesh() {
@@ -231,23 +224,16 @@ std::string WarpWindow::describe() const {
            " points selected";
 }
 
-std::string WarpWindow::describe_error() const {
-    if (std::isnan(m_max_error)) return "off as its machine is";
-    return "off by at most " + anamorph::shortest(static_cast<float>(m_max_error)) + " px (tol " +
-           anamorph::shortest(m_recipe.values().number("tol")) + ")";
-}
-
 bool WarpWindow::pick(std::size_t pane, const Point<double>& at, double within, Selecting how) {
     if (pane != this->edited_pane()) return false;
     const auto place = m_editor.point_near(at, within);
     if (!place) return false;
-    if (how != Selecting::only || m_editor.selected().count(*place) == 0)
-        m_editor.select(*place, mesh_selecting(how));
+    if (how != Selecting::only || m_editor.selected().count(*place) == 0) m_editor.select(*place, how);
     return true;
 }
 
 void WarpWindow::select_in(std::size_t pane, const anamorph::Bounds& box, Selecting how) {
-    if (pane == this->edited_pane()) m_editor.select_in(box, mesh_selecting(how));
+    if (pane == this->edited_pane()) m_editor.select_in(box, how);
 }
 
 void WarpWindow::drag(std::size_t, const Point<double>& by) {

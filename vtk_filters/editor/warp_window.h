@@ -35,7 +35,6 @@ class WarpWindow final : public EditWindow {
     std::string text() const override;
     void draw(const std::vector<bool>& anew) override;
     std::string describe() const override;
-    std::string describe_error() const override;
     bool pick(std::size_t pane, const Point<double>& at, double within, Selecting how) override;
     void select_in(std::size_t pane, const anamorph::Bounds& box, Selecting how) override;
     void select_none() override { m_editor.select_none(); }
@@ -63,7 +62,6 @@ class WarpWindow final : public EditWindow {
     /// What the picture was drawn by.
     std::optional<anamorph::Mesh> m_drawn_mesh;
     std::string m_drawn_text;
-    double m_max_error = 0;
     std::int64_t m_drawn_pixels = 0;
     /// Edges of cells in the image that the mesh lies in, and in the one that its vertices lie in; points.
     Overlay m_lattice, m_edges, m_free, m_selected, m_fixed;

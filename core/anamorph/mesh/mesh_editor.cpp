@@ -121,19 +121,17 @@ std::optional<MeshEditor::Place> MeshEditor::point_near(const Point<double>& at,
 void MeshEditor::select(const Place& place, Selecting how) {
     const auto is_it = [&](const ControlPoint& point) { return point.place == place && !point.is_fixed; };
     if (std::none_of(m_points.begin(), m_points.end(), is_it)) return;
-    if (how == Selecting::only) m_state.selected.clear();
-    if (!m_state.selected.insert(place).second && how == Selecting::other) m_state.selected.erase(place);
+    select_places({place}, how, m_state.selected);
 }
 
 void MeshEditor::select_in(const Bounds& box, Selecting how) {
-    if (how == Selecting::only) m_state.selected.clear();
+    std::vector<Place> inside;
     for (const ControlPoint& point : m_points) {
         const Point<double>& at = point.at;
-        if (point.is_fixed || !(at.x >= box.x0 && at.x <= box.x1 && at.y >= box.y0 && at.y <= box.y1))
-            continue;
-        if (!m_state.selected.insert(point.place).second && how == Selecting::other)
-            m_state.selected.erase(point.place);
+        if (!point.is_fixed && at.x >= box.x0 && at.x <= box.x1 && at.y >= box.y0 && at.y <= box.y1)
+            inside.push_back(point.place);
     }
+    select_places(inside, how, m_state.selected);
 }
 
 /// A point of a level may stand in the lists of finer levels as well, of which the finest counts that the map takes it from.
@@ -235,34 +233,20 @@ bool MeshEditor::cut_at(const Point<double>& at) {
 }
 
 void MeshEditor::keep_step(State before) {
-    m_redo.clear();
-    m_undo.push_back(std::move(before));
-    const auto vertices = [](std::size_t sum, const State& state) {
-        return sum + state.mesh.vertices.size();
+    m_steps.keep(std::move(before));
+    const auto vertices = [this] {
+        return std::accumulate(
+            m_steps.kept().begin(), m_steps.kept().end(), std::size_t{0},
+            [](std::size_t sum, const State& state) { return sum + state.mesh.vertices.size(); });
     };
-    while (m_undo.size() > kMostSteps ||
-           (m_undo.size() > 1 && std::accumulate(m_undo.begin(), m_undo.end(), std::size_t{0}, vertices) >
-                                     ControlMesh::kMaxVertices))
-        m_undo.erase(m_undo.begin());
+    while (steps() > 1 && vertices() > ControlMesh::kMaxVertices) m_steps.forget_first();
 }
 
-bool MeshEditor::swap_step(std::vector<State>& from, std::vector<State>& to) {
-    end_drag();
-    if (from.empty()) return false;
-    State now = m_state, next = std::move(from.back());
-    from.pop_back();
-    m_state.selected = std::move(next.selected);
-    take(std::move(next.mesh));
-    to.push_back(std::move(now));
+bool MeshEditor::restore(std::optional<State> state) {
+    if (!state) return false;
+    m_state.selected = std::move(state->selected);
+    take(std::move(state->mesh));
     return true;
-}
-
-bool MeshEditor::undo() {
-    return swap_step(m_undo, m_redo);
-}
-
-bool MeshEditor::redo() {
-    return swap_step(m_redo, m_undo);
 }
 
 namespace {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/editing.h"
 #include "anamorph/geometry/bounds_tree.h"
 #include "anamorph/geometry/box.h"
 #include "anamorph/mesh/mesh.h"
@@ -33,8 +34,6 @@ class MeshEditor {
         /// Is it a T-vertex: one on a cell that is not cut, which follows the patch of that cell and cannot be dragged?
         bool is_fixed;
     };
-    /// How points are selected: these alone, these too, or each as it was not.
-    enum class Selecting { only, more, other };
 
     /// Starts with a mesh that lies in an image of the size `from` and whose vertices lie in one of the size `to`. `name`: what
     /// messages call it. Throws Error where the map of the mesh does, and for ST-maps that are taken pixel for pixel.
@@ -72,12 +71,11 @@ class MeshEditor {
     bool cut_at(const Point<double>& at);
 
     /// Takes back the last step, or does it again. False where there is none.
-    bool undo();
-    bool redo();
-    /// The number of steps that may be taken back: the last kMostSteps, fewer where their meshes have more than
+    bool undo() { return restore(m_steps.undo(settled())); }
+    bool redo() { return restore(m_steps.redo(settled())); }
+    /// The number of steps that may be taken back: the last kMostUndoSteps, fewer where their meshes have more than
     /// ControlMesh::kMaxVertices vertices together, at least one.
-    std::size_t steps() const { return m_undo.size(); }
-    static constexpr std::size_t kMostSteps = 1000;
+    std::size_t steps() const { return m_steps.kept().size(); }
 
   private:
     struct State {
@@ -97,7 +95,12 @@ class MeshEditor {
     /// The vertex that says where a point lies, made where none does so far.
     Handle handle_of(ControlMesh& mesh, const Place& place) const;
     void keep_step(State before);
-    bool swap_step(std::vector<State>& from, std::vector<State>& to);
+    /// The state after a drag that is ended.
+    const State& settled() {
+        end_drag();
+        return m_state;
+    }
+    bool restore(std::optional<State> state);
 
     Size m_from, m_to;
     std::string m_name;
@@ -106,7 +109,7 @@ class MeshEditor {
     std::vector<ControlPoint> m_points;
     std::optional<State> m_before;
     std::vector<Handle> m_handles;
-    std::vector<State> m_undo, m_redo;
+    UndoSteps<State> m_steps;
 };
 
 /// The pixels of "from" that two meshes, of the same images, may map differently, in boxes that may overlap: those of all cells

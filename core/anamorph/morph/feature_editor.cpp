@@ -36,17 +36,11 @@ std::optional<FeatureEditor::Place> FeatureEditor::point_near(int shape, const P
     return nearest;
 }
 
-void FeatureEditor::choose(const std::vector<Place>& places, Selecting how) {
-    if (how == Selecting::only) m_state.selected.clear();
-    for (const Place& place : places)
-        if (!m_state.selected.insert(place).second && how == Selecting::other) m_state.selected.erase(place);
-}
-
 void FeatureEditor::select(const Place& place, Selecting how) {
     const Point<double> where = at(place);
     std::vector<Place> there = points(place.shape);
     std::erase_if(there, [&](const Place& p) { return at(p).x != where.x || at(p).y != where.y; });
-    choose(there, how);
+    select_places(there, how, m_state.selected);
 }
 
 void FeatureEditor::select_in(int shape, const Bounds& box, Selecting how) {
@@ -55,7 +49,7 @@ void FeatureEditor::select_in(int shape, const Bounds& box, Selecting how) {
         const Point<double> p = at(place);
         return !(p.x >= box.x0 && p.x <= box.x1 && p.y >= box.y0 && p.y <= box.y1);
     });
-    choose(inside, how);
+    select_places(inside, how, m_state.selected);
 }
 
 Features FeatureEditor::with(const std::vector<Features::Given>& given) const {
@@ -86,7 +80,7 @@ void FeatureEditor::end_drag(bool keep) {
     if (!m_before) return;
     State before = std::move(*m_before);
     m_before.reset();
-    if (keep) return keep_step(std::move(before));
+    if (keep) return m_steps.keep(std::move(before));
     m_state = std::move(before);
 }
 
@@ -98,7 +92,7 @@ void FeatureEditor::add_line(const std::vector<Line>& line) {
     for (int k = 0; k < next.features.shapes(); ++k)
         for (const std::size_t end : {0, 1}) next.selected.insert({next.features.given().size() - 1, k, end});
     std::swap(m_state, next);
-    keep_step(std::move(next));
+    m_steps.keep(std::move(next));
 }
 
 bool FeatureEditor::remove_selected() {
@@ -112,31 +106,14 @@ bool FeatureEditor::remove_selected() {
         if (gone.count(i) == 0) rest.push_back(given[i]);
     State next{with(rest), {}};
     std::swap(m_state, next);
-    keep_step(std::move(next));
+    m_steps.keep(std::move(next));
     return true;
 }
 
-void FeatureEditor::keep_step(State before) {
-    m_redo.clear();
-    m_undo.push_back(std::move(before));
-    if (m_undo.size() > kMostSteps) m_undo.erase(m_undo.begin());
-}
-
-bool FeatureEditor::swap_step(std::vector<State>& from, std::vector<State>& to) {
-    end_drag();
-    if (from.empty()) return false;
-    to.push_back(std::move(m_state));
-    m_state = std::move(from.back());
-    from.pop_back();
+bool FeatureEditor::restore(std::optional<State> state) {
+    if (!state) return false;
+    m_state = std::move(*state);
     return true;
-}
-
-bool FeatureEditor::undo() {
-    return swap_step(m_undo, m_redo);
-}
-
-bool FeatureEditor::redo() {
-    return swap_step(m_redo, m_undo);
 }
 
 }  // namespace anamorph

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/editing.h"
 #include "anamorph/geometry/bounds_tree.h"
 #include "anamorph/morph/feature_lines.h"
 
@@ -26,8 +27,6 @@ class FeatureEditor {
         std::size_t point;
         friend auto operator<=>(const Place&, const Place&) = default;
     };
-    /// How points are selected: these alone, these too, or each as it was not.
-    enum class Selecting { only, more, other };
 
     /// Starts with features, which may be none.
     explicit FeatureEditor(Features features) : m_state{std::move(features), {}} {}
@@ -59,10 +58,9 @@ class FeatureEditor {
     bool remove_selected();
 
     /// Takes back the last step, or does it again. False where there is none.
-    bool undo();
-    bool redo();
-    std::size_t steps() const { return m_undo.size(); }
-    static constexpr std::size_t kMostSteps = 1000;
+    bool undo() { return restore(m_steps.undo(settled())); }
+    bool redo() { return restore(m_steps.redo(settled())); }
+    std::size_t steps() const { return m_steps.kept().size(); }
 
   private:
     struct State {
@@ -71,13 +69,16 @@ class FeatureEditor {
     };
     /// The same features with others in the place of those given.
     Features with(const std::vector<Features::Given>& given) const;
-    void keep_step(State before);
-    bool swap_step(std::vector<State>& from, std::vector<State>& to);
-    void choose(const std::vector<Place>& places, Selecting how);
+    /// The state after a drag that is ended.
+    const State& settled() {
+        end_drag();
+        return m_state;
+    }
+    bool restore(std::optional<State> state);
 
     State m_state;
     std::optional<State> m_before;
-    std::vector<State> m_undo, m_redo;
+    UndoSteps<State> m_steps;
 };
 
 }  // namespace anamorph

@@ -55,6 +55,11 @@ double error_of(const Constant& constant) {
     return constant.as<Rounded<long double>>().error;
 }
 
+/// An entry that is off by `error`; where nothing is left of it, it is known no better than that it is small.
+Constant constant_of(long double value, double error) {
+    return Constant(value == 0 ? error * 0x1p-20L : value, 2 * error);
+}
+
 /// The inverse of the one times the other, by columns: dot products of their columns. Sums of three products are off by
 /// 3 units of each in long double, and by what the entries are off, of which products of two are next to nothing.
 Turn relative(const Turn& held, const Turn& look) {
@@ -69,9 +74,8 @@ Turn relative(const Turn& held, const Turn& look) {
                 size += std::fabs(product);
                 off += std::fabs(a.precise()) * error_of(b) + std::fabs(b.precise()) * error_of(a);
             }
-            // An entry that is known no better than that it is small.
             const double error = static_cast<double>(off + size * 6 * Rounded<long double>::kUnit);
-            turn[column][row] = Constant(sum == 0 && size > 0 ? error * 0x1p-20L : sum, 2 * error);
+            turn[column][row] = constant_of(sum, error);
         }
     return turn;
 }
@@ -88,41 +92,25 @@ Turn of_face(const Turn& turn, const glm::dmat3& face) {
     return all;
 }
 
-/// A number and what it is off at most.
-struct Off {
-    long double value = 0;
-    double error = 0;
-};
-/// a - b c, and by what the factors and a are off, with three roundings.
-Off less_product(const Off& a, const Off& b, const Off& c) {
-    const long double product = b.value * c.value;
-    const double error = a.error +
-                         static_cast<double>(std::fabs(b.value) * c.error + std::fabs(c.value) * b.error) +
-                         b.error * c.error;
-    const auto size = static_cast<double>(std::fabs(a.value) + std::fabs(product));
-    return {a.value - product, (error + 3 * Rounded<long double>::kUnit * size) * rounded_detail::kUp};
-}
-Off off_of(const Constant& constant) {
-    return {constant.precise(), error_of(constant)};
-}
-Constant constant_of(const Off& off) {
-    // An entry that is known no better than that it is small.
-    const bool is_lost = off.value == 0 && off.error > 0;
-    return Constant(is_lost ? off.error * 0x1p-20L : off.value, 2 * off.error);
+/// The entry of I - c n^T times a direction: of c, `camera`, and of the direction by `row`.
+template <class T>
+T transferred(double camera, const std::array<Constant, 3>& normal, const std::array<Constant, 3>& direction,
+              std::size_t row) {
+    const auto along = [&](std::size_t i) { return T(normal[i].as<T>()) * T(direction[i].as<T>()); };
+    return T(direction[row].as<T>()) - T(camera) * (along(0) + along(1) + along(2));
 }
 
 /// (I - c n^T) of the columns of a turn.
 Turn transferred(const PlaneTransfer& transfer, const Turn& turn) {
-    const Turn toward = turn_of({transfer.yaw, transfer.pitch});
+    const std::array<Constant, 3> normal = turn_of({transfer.yaw, transfer.pitch})[2];
     Turn all;
-    for (std::size_t column = 0; column < 3; ++column) {
-        Off along;  // less n . d
-        for (std::size_t i = 0; i < 3; ++i)
-            along = less_product(along, off_of(toward[2][i]), off_of(turn[column][i]));
-        for (std::size_t row = 0; row < 3; ++row)
-            all[column][row] =
-                constant_of(less_product(off_of(turn[column][row]), {-transfer.camera[row]}, along));
-    }
+    for (std::size_t column = 0; column < 3; ++column)
+        for (std::size_t row = 0; row < 3; ++row) {
+            const double camera = transfer.camera[row];
+            const auto value = transferred<long double>(camera, normal, turn[column], row);
+            const double error = transferred<Rounded<long double>>(camera, normal, turn[column], row).error;
+            all[column][row] = constant_of(value, error);
+        }
     return all;
 }
 

@@ -85,7 +85,6 @@ TEST_F(VtkMorphWindow, EndsThatMeetAreDraggedInEitherPicture) {
     EXPECT_FALSE(window.has_changes());
     // A line without a length is refused, and all stays.
     const test::Display p = display(window, 0, {10, 10}), q = display(window, 0, {66, 24});
-    settle();
     event(window, vtkCommand::LeftButtonPressEvent, p);
     event(window, vtkCommand::MouseMoveEvent, q);
     EXPECT_THAT(window.error(), HasSubstr("a line needs a length"));

@@ -165,7 +165,6 @@ TEST_F(VtkWarpWindow, EscapeGivesADragUp) {
     write_all();
     const auto window = open();
     const test::Display at = display_of(*window, {0, 2, 1});
-    settle();
     event(*window, vtkCommand::LeftButtonPressEvent, at);
     event(*window, vtkCommand::MouseMoveEvent, {at[0] + 20, at[1]});
     EXPECT_TRUE(window->has_changes());
@@ -342,7 +341,6 @@ TEST_F(VtkWarpWindow, WhatCannotBeDrawnIsSaidAndTheMeshStays) {
     const auto window = open();
     const std::string before = mesh_json(window->editor().mesh());
     const test::Display at = display_of(*window, {0, 2, 1});
-    settle();
     event(*window, vtkCommand::LeftButtonPressEvent, at);
     // Farther than positions may lie.
     for (int i = 0; i < 3; ++i) event(*window, vtkCommand::MouseMoveEvent, {2000000000, at[1]});

@@ -9,14 +9,12 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace anamorph::test {
@@ -70,8 +68,8 @@ class WindowTest : public testing::Test {
         ASSERT_EQ(window.error(), "");
     }
     static void event(EditWindow& window, unsigned long id, const Display& at, const char* key = nullptr,
-                      bool control = false, bool shift = false) {
-        window.interactor()->SetEventInformation(at[0], at[1], control, shift, 0, 0, key);
+                      bool control = false, bool shift = false, int repeat = 0) {
+        window.interactor()->SetEventInformation(at[0], at[1], control, shift, 0, repeat, key);
         window.interactor()->InvokeEvent(id);
     }
     static void key(EditWindow& window, const char* name, bool control = false, bool shift = false,
@@ -81,7 +79,6 @@ class WindowTest : public testing::Test {
     /// Presses the left button, moves in some steps, and lets go.
     static void drag(EditWindow& window, const Display& from, const Display& to, bool control = false,
                      bool shift = false) {
-        settle();
         event(window, vtkCommand::LeftButtonPressEvent, from, nullptr, control, shift);
         for (int k = 1; k <= 3; ++k)
             event(window, vtkCommand::MouseMoveEvent,
@@ -93,14 +90,11 @@ class WindowTest : public testing::Test {
         drag(window, at, at, control, shift);
     }
     static void double_click(EditWindow& window, const Display& at) {
-        settle();
         for (int i = 0; i < 2; ++i) {
-            event(window, vtkCommand::LeftButtonPressEvent, at);
+            event(window, vtkCommand::LeftButtonPressEvent, at, nullptr, false, false, i);
             event(window, vtkCommand::LeftButtonReleaseEvent, at);
         }
     }
-    /// Waits until a click is no second one of those before.
-    static void settle() { std::this_thread::sleep_for(std::chrono::milliseconds(450)); }
 
     /// The pixel of the window that a position of a pane's picture is in.
     static Display display(EditWindow& window, std::size_t pane, const Point<double>& picture) {
