@@ -194,5 +194,18 @@ TEST(FeatureEditor, ShapesInAnotherOrderTakeWhatWasGivenAlong) {
     EXPECT_EQ(turned.line(1, 0).p.x, 12);
 }
 
+TEST(FeatureEditor, KeepsTheLastStepsThatItPromises) {
+    FeatureEditor editor((Features(2)));
+    editor.add_line({{{0, 0}, {10, 0}}, {{0, 0}, {10, 0}}});
+    for (std::size_t i = 0; i < kMostUndoSteps + 5; ++i) {
+        editor.drag({1, 0});
+        editor.end_drag();
+    }
+    EXPECT_EQ(editor.steps(), kMostUndoSteps);
+    for (std::size_t i = 0; i < kMostUndoSteps; ++i) ASSERT_TRUE(editor.undo());
+    EXPECT_FALSE(editor.undo());
+    EXPECT_EQ(editor.features().line(0, 0).p.x, 5);
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -325,6 +325,54 @@ TEST(PanoramaTruth, NoPixelIsOverItsBoundOfCamerasThatStandElsewhere) {
     EXPECT_GT(pixels, 400000);
 }
 
+// The matrix between local rays is off by no more than the map says, and of a camera far away by more than without one.
+TEST(PanoramaTruth, MatricesOfCamerasFarAwayAreWithinTheirBound) {
+    Random random(2014);
+    const Chart chart(equirectangular, 400, 200);
+    double worst = 0;
+    for (int round = 0; round < 300; ++round) {
+        const Orientation look = random.orientation();
+        Orientation held = random.orientation();
+        const double far = round % 3 == 0 ? 5e5 : round % 3 == 1 ? 500 : 0.5;
+        held.transfer = PlaneTransfer{
+            {random.between(-1, 1) * far, random.between(-1, 1) * far, random.between(-1, 1) * far},
+            random.angle(),
+            random.between(-90, 90)};
+        const Panorama map(chart, chart, look, held);
+        const Panorama::Local local = map.local_around(random.between(0, 400), random.between(40, 160), 0);
+        const auto ahead = [](const Branch& branch) { return branch.around.angle / oracle::kPi * 180; };
+        for (int column = 0; column < 3; ++column) {
+            Vector v{column == 0 ? 1.0L : 0, column == 1 ? 1.0L : 0, column == 2 ? 1.0L : 0};
+            // Frames of panoramas are turned about the vertical by the angle that their branches say.
+            const auto turned_about = [](Vector& a, long double degrees) {
+                const long double c = std::cos(degrees * oracle::kPi / 180),
+                                  s = std::sin(degrees * oracle::kPi / 180);
+                a = {a.x * c + a.z * s, a.y, a.z * c - a.x * s};
+            };
+            turned_about(v, ahead(local.target));
+            v = oracle::rotated(v, look);
+            // Whether a direction meets the plane or not, the matrix is one.
+            Vector n{0, 0, 1};
+            oracle::turn(n.y, n.z, held.transfer->pitch);
+            oracle::turn(n.z, n.x, held.transfer->yaw);
+            const Real along = n.x * v.x + n.y * v.y + n.z * v.z;
+            v = {v.x - held.transfer->camera[0] * along, v.y - held.transfer->camera[1] * along,
+                 v.z - held.transfer->camera[2] * along};
+            Orientation turns = held;
+            turns.transfer.reset();
+            v = oracle::turned_back(v, turns);
+            turned_about(v, -ahead(local.source));
+            const Real expected[] = {v.x, v.y, v.z};
+            for (int row = 0; row < 3; ++row) {
+                const auto off = static_cast<double>(std::fabs(expected[row] - local.rotation[column][row]));
+                EXPECT_LE(off, map.local_error()) << round;
+                worst = std::max(worst, off);
+            }
+        }
+    }
+    EXPECT_GT(worst, 100 * Panorama::kLocalError);
+}
+
 TEST(PanoramaTruth, NoPixelIsOverItsBoundThroughLenses) {
     const char* const rounds = std::getenv("ANAMORPH_TRUTH_ROUNDS");
     const char* const seed_text = std::getenv("ANAMORPH_TRUTH_SEED");

@@ -26,6 +26,13 @@ ControlMesh checked(ControlMesh mesh, const std::string& name) {
     return mesh;
 }
 
+/// The vertices of all levels.
+std::size_t vertex_count(const ControlMesh& mesh) {
+    std::size_t count = mesh.vertices.size();
+    for (const auto& level : mesh.levels) count += level.vertices.size();
+    return count;
+}
+
 /// Is every cell around a vertex of `level` at least as fine?
 bool is_free(const Mesh& map, int level, int column, int row) {
     const Point<double> at = map.lattice_place(level, column, row);
@@ -237,7 +244,7 @@ void MeshEditor::keep_step(State before) {
     const auto vertices = [this] {
         return std::accumulate(
             m_steps.kept().begin(), m_steps.kept().end(), std::size_t{0},
-            [](std::size_t sum, const State& state) { return sum + state.mesh.vertices.size(); });
+            [](std::size_t sum, const State& state) { return sum + vertex_count(state.mesh); });
     };
     while (steps() > 1 && vertices() > ControlMesh::kMaxVertices) m_steps.forget_first();
 }
