@@ -405,6 +405,36 @@ TEST(DrapedSurface, DeepBumpsAreEnclosedByTheirRanges) {
     }
 }
 
+// In a thin layer a depth that is off by its rounding moves a point by far more than its own.
+TEST(DrapedSurface, RoundingOfDepthsCountsInThinLayers) {
+    constexpr unsigned kSeed = 33;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    SurfaceShape shape;
+    shape.angle = 360;
+    double worst = 0;
+    for (int n = 0; n < 400; ++n) {
+        const double u = uniform(random), v = 0.1 + 0.8 * uniform(random);
+        Deformation d;
+        d.vector = {0.1, -0.2, 0.3};
+        d.center = {u, 1 - v};
+        if (n % 2) d.kernel = DeformationKernel::wendland_c2;
+        d.extent_w = 1e-6;
+        const auto depth = static_cast<double>(test::oracle_surface("sphere", shape, u, v)[2]);
+        d.center_w = depth + 1e-6 * (uniform(random) - 0.5);
+        const auto surface = make_surface(number_of("sphere"), shape, {d});
+        const glm::dvec3 computed = surface->position(u, v);
+        const Vector exact = deep_point(shape, {d}, u, v);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto off = static_cast<double>(std::fabs(exact[i] - computed[static_cast<int>(i)]));
+            EXPECT_LE(off, surface->rounding(u, v)) << n;
+            worst = std::max(worst, off);
+        }
+    }
+    EXPECT_GT(worst, 1e-12);
+}
+
 TEST(DrapedSurface, DeepBumpsAreSeenWithinTheTolerance) {
     SurfaceShape shape;
     shape.angle = 360;
