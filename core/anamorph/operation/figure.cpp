@@ -131,6 +131,42 @@ ParameterTable style_rows() {
     };
 }
 
+/// Colors by formulas, and heights.
+ParameterTable relief_rows() {
+    using namespace rows;
+    std::vector<std::string> names = {"none"};
+    std::string what =
+        "of styles shaded and textured, a color at every point of a body, as if it were cut out of a block: "
+        "none";
+    for (const figure::SolidPreset& preset : figure::solid_presets()) {
+        names.push_back(preset.name);
+        what += "; " + preset.name + ", " + preset.documentation;
+    }
+    names.push_back("formula");
+    return {
+        choice("solid", "none", names, what + "; formula, by red, green and blue"),
+        number("solid_scale", "units", "100", 0.001, 1e6, "the length that formulas of solid call scale"),
+        whole("solid_samples", "", "4", 1, figure::kMostSolidSamples,
+              "of solid: a pixel's color is the mean at this number of points of it either way; what is "
+              "finer is not "
+              "averaged away"),
+        text("red",
+             "of solid=formula, a formula of x, y and z, the point in the body's own axes from its centre, "
+             "in units, of "
+             "own_red, own_green and own_blue, the body's color, from 0 to 1 as the result is, of scale and "
+             "of frame; "
+             "own_red by default"),
+        text("green", "the same; own_green by default"),
+        text("blue", "the same; own_blue by default"),
+        text("let", "definitions before these, as in k=0.3;c=cos(k)"),
+        file("bump",
+             "of styles shaded and textured: a picture of heights around each body, by mapping: the "
+             "brightness, the mean "
+             "of up to three channels, turns normals (Blinn 1978)"),
+        number("bump_scale", "units", "10", -1e6, 1e6, "how high brightness 1 is"),
+    };
+}
+
 /// Who sees them, before what.
 ParameterTable figure_view_rows() {
     using namespace rows;
@@ -176,7 +212,8 @@ ParameterTable line_rows() {
 
 ParameterTable make_figure_table() {
     ParameterTable table;
-    for (const ParameterTable& part : {script_rows(), style_rows(), figure_view_rows(), line_rows()})
+    for (const ParameterTable& part :
+         {script_rows(), style_rows(), relief_rows(), figure_view_rows(), line_rows()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
@@ -295,6 +332,8 @@ LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
         add_textures(figure::read_motion(reader.text(file.name), short_name(file))->images());
     const auto backdrop = files.find("backdrop");
     if (backdrop != files.end()) linked.push_back({"picture/backdrop", backdrop->second.name, true});
+    const auto bump = files.find("bump");
+    if (bump != files.end()) linked.push_back({"picture/bump", bump->second.name, true});
     return linked;
 }
 
@@ -412,6 +451,32 @@ void read_viewport(const ParameterValues& values, figure::FigureLook& look) {
         throw Error("viewport", printable(text), "is of styles outline and stick alone");
 }
 
+/// Colors by formulas; of a text that is given for other values of solid nothing is kept in silence.
+void read_solid(const ParameterValues& values, figure::FigureLook& look) {
+    const std::string solid = values.text("solid");
+    for (const char* name : {"red", "green", "blue", "let"})
+        if (solid != "formula" && values.given(name))
+            throw Error(name, printable(values.text(name)), "is of solid=formula alone");
+    const bool shaded =
+        look.style == figure::FigureStyle::shaded || look.style == figure::FigureStyle::textured;
+    for (const char* name : {"solid", "bump"})
+        if (!shaded && values.given(name))
+            throw Error(name, printable(values.text(name)), "is of styles shaded and textured alone");
+    if (solid == "none") return;
+    figure::SolidLook own;
+    for (const figure::SolidPreset& preset : figure::solid_presets())
+        if (preset.name == solid) own.text = preset.text;
+    for (const auto& [name, to] : {std::pair{"red", &own.text.red}, std::pair{"green", &own.text.green},
+                                   std::pair{"blue", &own.text.blue}, std::pair{"let", &own.text.let}})
+        if (values.given(name)) *to = values.text(name);
+    own.scale = values.number("solid_scale");
+    own.samples = values.whole("solid_samples");
+    if (!values.toggle("antialias")) own.samples = 1;
+    // What is wrong with a text is said before a frame is drawn.
+    parse_solid(own.text, {});
+    look.solid = own;
+}
+
 /// A colour, or bands.
 void read_background(const ParameterValues& values, figure::FigureLook& look) {
     if (!values.given("background")) return;
@@ -447,6 +512,9 @@ FigureRequest read_request(const ParameterValues& values) {
     look.mapping = rows::chosen<figure::BodyMapping>(values, "mapping");
     read_filter(values, look);
     look.backdrop = values.given("backdrop");
+    read_solid(values, look);
+    look.bumps = values.given("bump");
+    look.bump_scale = values.number("bump_scale");
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
