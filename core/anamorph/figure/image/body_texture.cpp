@@ -62,10 +62,8 @@ bool BodyTexture::read_average(const Jacobian& jacobian, double u, double v) {
     if (!m_sums) return m_sampler.sample(m_chooser(jacobian), jacobian, 0, u, v, m_pixel.data());
     const Jacobian rectangle = covering_rectangle(jacobian);
     if (m_mapping == BodyMapping::latlong)
-        m_sums->mean_over_poles(u, v, rectangle.x_i, rectangle.y_j, m_pixel.data());
-    else
-        m_sums->mean(u, v, rectangle.x_i, rectangle.y_j, m_border.wrap(), m_pixel.data());
-    return true;
+        return m_sums->mean_over_poles(u, v, rectangle.x_i, rectangle.y_j, m_pixel.data());
+    return m_sums->mean(u, v, rectangle.x_i, rectangle.y_j, m_border.wrap(), m_pixel.data());
 }
 
 bool BodyTexture::read_trilinear(const Jacobian& jacobian, double u, double v) {
