@@ -192,6 +192,21 @@ ParameterTable line_rows() {
     using namespace rows;
     return {
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
+        enumeration("outlines", "limbs",
+                    {{"limbs", figure::OutlineStyle::limbs},
+                     {"levels", figure::OutlineStyle::levels},
+                     {"boxes", figure::OutlineStyle::boxes},
+                     {"contours", figure::OutlineStyle::contours},
+                     {"cylinders", figure::OutlineStyle::cylinders}},
+                    "of style outline: limbs, the outlines of bodies; levels, each figure as a dot, sticks, "
+                    "boxes or contours, the "
+                    "first that is within outline_tol of these (Fetter); boxes; contours, across each body's "
+                    "longest axis, as few "
+                    "as hold outline_tol; cylinders, with shadow lines, circular arcs, clip and crease, "
+                    "nothing hidden (Willmert)"),
+        number("outline_tol", "pixels", shortest(figure::kSimpleTolRow.standard), figure::kSimpleTolRow.least,
+               1e6,
+               "of outlines=levels and contours: how far what stands for bodies may be from their outlines"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
         numbers("viewport", -kInfinity,
                 "of styles outline and stick: x,y,a,b: the middle, from the upper left, and the half-axes of "
@@ -518,6 +533,10 @@ FigureRequest read_request(const ParameterValues& values) {
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
+    look.lines.style = rows::chosen<figure::OutlineStyle>(values, "outlines");
+    look.lines.simple_tol = values.number("outline_tol");
+    if (look.style != figure::FigureStyle::outline && values.given("outlines"))
+        throw Error("outlines", values.text("outlines"), "is of style outline alone");
     read_viewport(values, look);
     request.camera = three(values, "camera", -kFar, kFar);
     request.place = three(values, "place", -kFar, kFar);
@@ -536,8 +555,12 @@ class SolvedFigure final : public SolvedPicture {
     /// Rays meet the bodies themselves; only curved lines are made of chords.
     Attributes reached(const ParallelFor&) const override {
         const bool chords = m_style == figure::FigureStyle::outline;
-        return {{"anamorph:max_error", chords ? kChordError : 0.0},
-                {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
+        Attributes all = {{"anamorph:max_error", chords ? m_picture.simple_error() + kChordError : 0.0},
+                          {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
+        std::string names;
+        for (const std::string& name : m_picture.left_out()) names += (names.empty() ? "" : ", ") + name;
+        if (!names.empty()) all.push_back({"anamorph:left_out", names});
+        return all;
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
@@ -616,7 +639,13 @@ class Figures final : public Pictures {
                 picture.says.push_back({"oiio:ColorSpace", std::string("sRGB")});
         }
         const bool chords = m_request.look.style == figure::FigureStyle::outline;
-        picture.says.push_back({"anamorph:tol", chords ? kChordError : 0.0});
+        // Boxes and cylinders hold no tolerance: anamorph:max_error is what they come to.
+        const figure::DrawingOptions& lines = m_request.look.lines;
+        const bool holds =
+            lines.style == figure::OutlineStyle::levels || lines.style == figure::OutlineStyle::contours;
+        if (lines.style == figure::OutlineStyle::limbs || holds)
+            picture.says.push_back(
+                {"anamorph:tol", chords ? kChordError + (holds ? lines.simple_tol : 0) : 0.0});
         picture.says.push_back({"anamorph:frame", number});
         if (!m_request.missing.empty())
             picture.says.push_back({"anamorph:missing_textures", m_request.missing});

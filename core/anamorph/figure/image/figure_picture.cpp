@@ -59,12 +59,12 @@ bool is_shaded(FigureStyle style) {
     return style == FigureStyle::shaded || style == FigureStyle::textured;
 }
 
-/// Lines are drawn, the strokes of `look`.
-StrokePixels strokes_of(const FigureFrame& frame, const View& view, const Size& size, const FigureLook& look,
-                        const ParallelFor& parallel_for) {
+/// Lines as `look` has them.
+Drawing drawing_of(const FigureFrame& frame, const View& view, const Size& size, const FigureLook& look,
+                   const ParallelFor& parallel_for) {
     DrawingOptions lines = look.lines;
     if (look.style == FigureStyle::stick) lines.sticks = frame.joints.empty() ? Sticks::axes : Sticks::joints;
-    return StrokePixels(draw(frame, view, {size.width, size.height}, lines, parallel_for));
+    return draw(frame, view, {size.width, size.height}, lines, parallel_for);
 }
 
 /// The sources of a picture as one thread reads them: made when the first pixel needs them.
@@ -133,6 +133,8 @@ struct FigurePicture::Impl {
              ///< the observer has them
     std::unique_ptr<const VisibleSurfaces> surfaces = {};
     std::unique_ptr<const StrokePixels> strokes = {};
+    double simple_error = 0;
+    std::vector<int> left_out = {};
 
     /// Towards the eye, from what is seen at (x, y).
     glm::dvec3 toward_eye(double x, double y) const {
@@ -282,12 +284,26 @@ FigurePicture::FigurePicture(FigureFrame frame, const View& view, const Size& si
         if (look.bumps && is_shaded(look.style))
             impl->slopes.push_back(slopes_of(body.shape, view, look.bump_scale));
     }
-    if (is_lines(look.style))
-        impl->strokes = std::make_unique<const StrokePixels>(strokes_of(own, view, size, look, parallel_for));
-    else
+    if (is_lines(look.style)) {
+        Drawing lines = drawing_of(own, view, size, look, parallel_for);
+        impl->simple_error = lines.simple_error;
+        impl->left_out = lines.left_out;
+        impl->strokes = std::make_unique<const StrokePixels>(std::move(lines));
+    } else
         impl->surfaces = std::make_unique<const VisibleSurfaces>(shapes_of(own), view, size.height,
                                                                  names_of(own), parallel_for);
     m_impl = std::move(impl);
+}
+
+double FigurePicture::simple_error() const {
+    return m_impl->simple_error;
+}
+
+std::vector<std::string> FigurePicture::left_out() const {
+    std::vector<std::string> names;
+    for (const int i : m_impl->left_out)
+        names.push_back(m_impl->frame.bodies[static_cast<std::size_t>(i)].name);
+    return names;
 }
 
 FigurePicture::~FigurePicture() = default;
