@@ -176,7 +176,8 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
         EXPECT_THAT(error_of({{"solid", "wood"}, {key, "x"}}), HasSubstr("is of solid=formula alone")) << key;
         EXPECT_THAT(error_of({{"solid", "formula"}, {key, "k=nosuch"}}), HasSubstr(key)) << key;
     }
-    EXPECT_THAT(error_of({{"solid", "formula"}, {"red", "q+1"}}), AllOf(HasSubstr("red=q+1"), HasSubstr("q")));
+    EXPECT_THAT(error_of({{"solid", "formula"}, {"red", "q+1"}}),
+                AllOf(HasSubstr("red=q+1"), HasSubstr("q")));
     EXPECT_THAT(error_of({{"solid", "stone"}}), AllOf(HasSubstr("solid=stone"), HasSubstr("marble")));
     for (const char* samples : {"0", "17", "nan", "2147483648"})
         EXPECT_THAT(error_of({{"solid_samples", samples}}), HasSubstr("must be an integer from 1 to 16"));
@@ -185,7 +186,8 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
     for (const char* scale : {"nan", "inf", "2e6"})
         EXPECT_THAT(error_of({{"bump_scale", scale}}), HasSubstr("must be a number from -1e+06 to 1e+06"));
     for (const char* key : {"solid", "bump"})
-        EXPECT_THAT(error_of({{"style", "depth"}, {key, "wood"}}), HasSubstr("is of styles shaded and textured alone"));
+        EXPECT_THAT(error_of({{"style", "depth"}, {key, "wood"}}),
+                    HasSubstr("is of styles shaded and textured alone"));
     EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5"}, {"style", "outline"}}),
                 HasSubstr("viewport=0.5,0.5,0.5: must be x,y,a,b"));
     EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5,0"}, {"style", "stick"}}), HasSubstr("from 1e-04 to 10"));
