@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "anamorph/figure/outline/drawing.h"
+#include "anamorph/figure/outline/simple_outlines.h"
 #include "figure_picture_cases.h"
 
 namespace anamorph {

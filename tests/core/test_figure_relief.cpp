@@ -6,6 +6,7 @@
 
 #include "anamorph/figure/image/bump_map.h"
 #include "anamorph/figure/image/figure_picture.h"
+#include "anamorph/figure/image/solid_texture.h"
 #include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "anamorph/error.h"
-#include "anamorph/formula/solid_text.h"
+#include "anamorph/formula/solid_program.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 

@@ -12,8 +12,6 @@
 #include <array>
 #include <string>
 
-#include "anamorph/formula/formula_text.h"
-
 namespace anamorph {
 
 /// A color at every point of space, each channel from 0 to 1.
@@ -29,10 +27,5 @@ struct SolidSetting {
     double scale = 1, frame = 0;
     bool behind = false;  ///< which half of the ellipsoid: that with z of at least 0
 };
-
-/// Parses a color over half of an ellipsoid, as programs of the stereographic coordinates of its points: with the point (a, b, c) of
-/// the unit sphere, a / (1 + |c|) and b / (1 + |c|), which are at most 1. Errors name the expressions red, green, blue and let. Throws
-/// as parse_formula() does.
-SpaceFormula parse_solid(const SolidText& text, const SolidSetting& setting);
 
 }  // namespace anamorph

@@ -10,6 +10,7 @@
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/figure/image/mrasel_maps.h"
+#include "anamorph/figure/image/solid_texture.h"
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script.h"
 #include "anamorph/figure/outline/fit.h"

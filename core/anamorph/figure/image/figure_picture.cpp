@@ -11,6 +11,7 @@
 #include "anamorph/figure/image/body_texture.h"
 #include "anamorph/figure/image/bump_map.h"
 #include "anamorph/figure/image/perturbation.h"
+#include "anamorph/figure/image/solid_texture.h"
 #include "anamorph/figure/image/visible_surfaces.h"
 #include "anamorph/figure/outline/stroke_pixels.h"
 #include "anamorph/image/canvas.h"

@@ -15,7 +15,7 @@
 #include "anamorph/figure/body/body_mapping.h"
 #include "anamorph/figure/body/frame.h"
 #include "anamorph/figure/image/shading.h"
-#include "anamorph/figure/image/solid_texture.h"
+#include "anamorph/figure/image/solid_look.h"
 #include "anamorph/figure/outline/drawing.h"
 #include "anamorph/figure/outline/outline_view.h"
 #include "anamorph/geometry/box.h"

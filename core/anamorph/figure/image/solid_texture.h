@@ -12,7 +12,8 @@
 
 #include "anamorph/figure/body/frame.h"
 #include "anamorph/figure/image/seen_surface.h"
-#include "anamorph/formula/solid_text.h"
+#include "anamorph/figure/image/solid_look.h"
+#include "anamorph/formula/solid_program.h"
 
 namespace anamorph::figure {
 
@@ -24,16 +25,6 @@ struct SolidPreset {
 
 /// The textures that come with Anamorph: wood, marble and checker.
 const std::vector<SolidPreset>& solid_presets();
-
-/// How bodies are colored by formulas.
-struct SolidLook {
-    SolidText text;
-    double scale = 100;  ///< the name `scale` of the formulas, in units of the scene
-    int samples =
-        4;  ///< points of a pixel either way, over which colors are averaged; from 1 to kMostSolidSamples
-};
-
-inline constexpr int kMostSolidSamples = 16;
 
 /// A body's solid texture. Thread safe.
 class SolidTexture {

@@ -10,6 +10,7 @@
 #include "anamorph/figure/body/skeleton.h"
 #include "anamorph/figure/outline/level_of_detail.h"
 #include "anamorph/figure/outline/outline.h"
+#include "anamorph/figure/outline/simple_outlines.h"
 
 namespace anamorph::figure {
 namespace {

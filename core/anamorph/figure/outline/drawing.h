@@ -10,8 +10,8 @@
 
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/body/frame.h"
+#include "anamorph/figure/outline/outline_style.h"
 #include "anamorph/figure/outline/outline_view.h"
-#include "anamorph/figure/outline/simple_outlines.h"
 #include "anamorph/figure/outline/viewport.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/parameter/number_row.h"

@@ -23,9 +23,6 @@
 
 namespace anamorph::figure {
 
-/// What bodies are drawn as: their outlines; the level of Fetter's that serves; one of these; or Willmert's cylinders.
-enum class OutlineStyle : std::uint8_t { limbs, levels, boxes, contours, cylinders };
-
 /// The levels of detail of a figure, from least to most.
 enum class FigureLevel : std::uint8_t { dot, sticks, boxes, contours, limbs };
 
