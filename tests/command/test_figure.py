@@ -881,7 +881,7 @@ class BadInput(Case):
                 if standard and (command, name) != ("text", "tol"):
                     self.assertEqual(self.output(command, ball, "--%s=%s" % (name, standard)), plain, name)
                 compared += 1
-        self.assertEqual(compared, 7 + 4)
+        self.assertEqual(compared, 8 + 5)
 
     def test_files(self):
         self.assertIn("cannot read", self.error("check", self.path("none.n")))

@@ -14,6 +14,7 @@ struct SolidLook {
         4;  ///< points of a pixel either way, over which colors are averaged; from 1 to kMostSolidSamples
 };
 
+/// The most points of a pixel either way.
 inline constexpr int kMostSolidSamples = 16;
 
 }  // namespace anamorph::figure
