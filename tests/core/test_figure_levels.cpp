@@ -241,6 +241,14 @@ TEST(FigureLevels, CylindersAreJoinedByClipAndCreaseAndByArcs) {
     const glm::dvec2 along(std::cos(turn), std::sin(turn)), aside(-std::sin(turn), std::cos(turn));
     const glm::dvec2 other = (100 - 100 * k) * along + radius * aside, first(-100 + 100 * k, radius);
     EXPECT_NEAR(glm::length(inner[1] - 0.5 * (first + other)), 0, 1e-6);
+    // A joint in the middle of a body connects nothing: each body has its lines and both ends.
+    FigureFrame crossed = bent(100);
+    crossed.joints[0].position = {-100, 5, 0};
+    int whole_ends = 0;
+    for (const CylinderLine& line : cylinder_lines(crossed, view, 0.01, left_out))
+        whole_ends += std::fabs(glm::distance(line.points.front(), line.points.back()) - 2 * radius) < 1e-6;
+    EXPECT_EQ(whole_ends, 4);
+    EXPECT_EQ(cylinder_lines(crossed, view, 0.01, left_out).size(), 8u);
     // A cylinder that is seen along its axis has no shadow lines: both ends are drawn whole.
     View along_x;
     along_x.rotation = glm::dmat3(0, 0, 1, 0, 1, 0, -1, 0, 0);

@@ -329,8 +329,11 @@ class JoinedCylinders {
         for (int k = 0; k < 2; ++k) {
             if (!m_cylinders[bodies[k]] || m_cylinders[bodies[k]]->lines.size() != 2) return;
             const SeenCylinder& c = *m_cylinders[bodies[k]];
-            ends[k] =
-                glm::distance(c.ends[0], joint.position) <= glm::distance(c.ends[1], joint.position) ? 0 : 1;
+            // Where along the axis the joint is, from -1 to 1: one that is nearer to the middle than to an end connects nothing.
+            const glm::dvec3 axis = 0.5 * (c.ends[1] - c.ends[0]), middle = 0.5 * (c.ends[0] + c.ends[1]);
+            const double along = glm::dot(joint.position - middle, axis) / glm::dot(axis, axis);
+            if (!(std::fabs(along) >= 0.5)) return;
+            ends[k] = along < 0 ? 0 : 1;
         }
         if (bodies[0] == bodies[1]) return;
         const glm::dvec2 center = m_view.project(joint.position);

@@ -65,7 +65,8 @@ struct CylinderLine {
 
 /// Willmert's body: of each elliptic cylinder its shadow lines, or its end ellipses where it has none; at ends that no joint has, the
 /// outer part of the ellipse; at joints, side by side, clip and crease where two shadow lines cross, and else a circular arc
-/// about the joint from the one farther from it to the other, extrapolated. Nothing hides anything. `tol`: of chords, in pixels.
+/// about the joint from the one farther from it to the other, extrapolated; a joint nearer to a body's middle than to its ends
+/// connects nothing. Nothing hides anything. `tol`: of chords, in pixels.
 /// Bodies that reach before View::near are left out, and named by `left_out`.
 std::vector<CylinderLine> cylinder_lines(const FigureFrame& frame, const View& view, double tol,
                                          std::vector<int>& left_out);
