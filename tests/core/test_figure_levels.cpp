@@ -246,7 +246,7 @@ TEST(FigureLevels, CylindersAreJoinedByClipAndCreaseAndByArcs) {
     crossed.joints[0].position = {-100, 5, 0};
     int whole_ends = 0;
     for (const CylinderLine& line : cylinder_lines(crossed, view, 0.01, left_out))
-        whole_ends += std::fabs(glm::distance(line.points.front(), line.points.back()) - 2 * radius) < 1e-6;
+        whole_ends += std::fabs(glm::distance(line.points.front(), line.points.back()) - 2 * radius) < 0.02;
     EXPECT_EQ(whole_ends, 4);
     EXPECT_EQ(cylinder_lines(crossed, view, 0.01, left_out).size(), 8u);
     // A cylinder that is seen along its axis has no shadow lines: both ends are drawn whole.
