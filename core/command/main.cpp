@@ -257,6 +257,19 @@ class Command {
                         "Instead of outlines: the longest axis of each body, or lines from joint to joint")
             ->transform(CLI::CheckedTransformer(sticks))
             ->option_text("none|axes|joints [none]");
+        static const std::map<std::string, OutlineStyle> styles{{"limbs", OutlineStyle::limbs},
+                                                                {"levels", OutlineStyle::levels},
+                                                                {"boxes", OutlineStyle::boxes},
+                                                                {"contours", OutlineStyle::contours},
+                                                                {"cylinders", OutlineStyle::cylinders}};
+        sub->add_option(
+               "--outlines", d.style,
+               "Instead of outlines: each figure as a dot, sticks, boxes or contours, the first that is "
+               "within --simple-tol of these (Fetter); boxes; contours; elliptic cylinders (Willmert)")
+            ->transform(CLI::CheckedTransformer(styles))
+            ->option_text("limbs|levels|boxes|contours|cylinders [limbs]");
+        add_number(sub, "--simple-tol", d.simple_tol, kSimpleTolRow,
+                   "How far levels and contours may be from outlines, in pixels");
         sub->add_flag("--crossings", d.crossings,
                       "Draw the curves, too, in which bodies pass through each other");
         add_number(sub, "--lod", d.lod, kLevelOfDetailRow,

@@ -384,6 +384,31 @@ class Pictures(Case):
         self.assertEqual(sorted(shapes["line"]), [(300, 450), (300, 550)])
         self.assertGreater(len(shapes["body"]), 8)
 
+    def test_fewer_lines_than_outlines(self):
+        ball = scene(("ball", (101, 100, 100), (500, 500, 500)))
+        points = {}
+        for style in ("limbs", "levels", "boxes", "contours", "cylinders"):
+            root = self.svg(ball, "--outlines=" + style, "--size=1000")
+            points[style] = [p for _, line, _ in self.paths(ball, "--outlines=" + style, "--size=1000") for p in line]
+            share = {"boxes": (3 ** .5 - 1) / (3 ** .5 + 1), "cylinders": (2 ** .5 - 1) / (2 ** .5 + 1)}.get(style)
+            error = float(root.get("data-error", "0"))
+            if share:
+                self.assertAlmostEqual(error, 101 * share, delta=1.01)
+            else:
+                self.assertLessEqual(error, 0 if style == "limbs" else 1)
+            # What is drawn is as far from the ball's outline as that says at most.
+            reach = max(math.dist(p, (500, 500)) for p in points[style])
+            self.assertLess(abs(reach - 101), error + 1.2)
+        self.assertGreater(len(points["contours"]), len(points["boxes"]))
+        self.assertEqual(points["levels"], points["contours"])
+        # So small, it is a dot, a stick or a box.
+        dot = self.svg(scene(("ball", (.5, .4, .4), (500, 500, 500))), "--outlines=levels", "--size=1000")
+        self.assertEqual(len(list(dot.iter(SVG + "circle"))), 1)
+        stick = self.paths(scene(("ball", (50, .4, .4), (500, 500, 500))), "--outlines=levels", "--size=1000")
+        self.assertEqual([len(line) for _, line, _ in stick], [2])
+        box = self.paths(scene(("ball", (3, 3, 3), (500, 500, 500))), "--outlines=levels", "--size=1000")
+        self.assertLessEqual(len(box), 12)
+
     def test_colors_and_names(self):
         text = scene(("a_b", (50, 60, 70), (500, 500, 500)), extra="repeat 0 1 colour a_b 10 20.6 300\n")
         [path] = self.svg(text, "--dialect=strict", "--colors").iter(SVG + "path")
@@ -822,6 +847,8 @@ class BadInput(Case):
                 (["text", WALKER, "--viewport=.5,.5,nan,.5"], "must be x,y,a,b"),
                 (["png", WALKER, "--viewport=.5,.5,.5,0"], "the half-axes, from 1e-04 to 10"),
                 (["film", WALKER, "--viewport=.5,.5,.5,.5", "-o", "x.png"], "--style outline and stick"),
+                (["svg", WALKER, "--outlines=men"], "--outlines"), (["svg", WALKER, "--simple-tol=0"], "--simple-tol"),
+                (["svg", WALKER, "--simple-tol=nan"], "--simple-tol"),
                 (["svg", WALKER, "--nothing"], "--nothing")):
             self.assertIn(said, self.error(*options), options)
 
@@ -854,7 +881,7 @@ class BadInput(Case):
                 if standard and (command, name) != ("text", "tol"):
                     self.assertEqual(self.output(command, ball, "--%s=%s" % (name, standard)), plain, name)
                 compared += 1
-        self.assertEqual(compared, 7 + 4)
+        self.assertEqual(compared, 8 + 5)
 
     def test_files(self):
         self.assertIn("cannot read", self.error("check", self.path("none.n")))

@@ -629,6 +629,23 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
                   {{"machine", "oka-1987:address_bits=16,fraction_bits=9"}})["anamorph:saturated_pixels"],
               100);
     EXPECT_EQ(standard["anamorph:cracks"], 0);
+    EXPECT_EQ(standard["anamorph:blocks_left_out"], 0);
+    // A floor on which the camera stands: the machine has no map of what begins behind it, and blocks drawn in parts are no machine's.
+    const std::vector<Assignment> floor = {{"surface", "plane"},
+                                           {"camera", "0,-0.1,0.08"},
+                                           {"target", "0,0.3,0"},
+                                           {"up", "0,0,1"},
+                                           {"fov", "90"}};
+    const auto on_floor = [&](const char* scheme, const char* key, const char* value) {
+        std::vector<Assignment> all = floor;
+        all.push_back({"scheme", scheme});
+        all.push_back({key, value});
+        return reached_by_drape(all).at("anamorph:blocks_left_out");
+    };
+    EXPECT_GT(on_floor("hardware", "machine", "oka-1987:block=32"), 0);
+    EXPECT_LE(on_floor("hardware", "machine", "oka-1987:block=32"), 16);
+    EXPECT_EQ(on_floor("oka", "block", "32"), 0);
+    EXPECT_EQ(on_floor("oka-z", "block", "32"), 0);
     EXPECT_EQ(standard["anamorph:shown_ms"], 33);
     const auto message = [](const std::vector<Assignment>& more) -> std::string {
         try {

@@ -970,6 +970,64 @@ TEST(Drape, BlocksBehindTheCameraAndEdgeOnAreLeftOut) {
     }
 }
 
+/// A floor that begins behind the camera: every ray that meets it in front shows it, by the paper's blocks, too, of any size, where it
+/// belongs as far as the bound says. The ray's own equation is the reference.
+TEST(Drape, BlocksPartlyBehindTheCameraAreDrawnInParts) {
+    for (const double block : {4.0, 16.0, 64.0})
+        for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
+            Scene scene;
+            scene.pose = {.position = {0.03, -0.1, 0.08}, .target = {0, 0.3, 0}, .up = {0, 0, 1}, .fov = 90};
+            DrapeOptions options;
+            options.scheme = scheme;
+            options.block = block;
+            Shown shown(scene, options);
+            const Drape drape(shown.tree(), shown.camera(), scene.picture, options);
+            EXPECT_EQ(drape.left_out(), 0);
+            const double bound = drape.reached(serial_for).max_error;
+            const std::vector<float> points = shown.values(Output::stmap);
+            const int width = scene.screen.width, height = scene.screen.height;
+            const glm::dvec3 eye = scene.pose.position, ahead = glm::normalize(scene.pose.target - eye),
+                             right = glm::normalize(glm::cross(ahead, scene.pose.up)),
+                             down = glm::cross(ahead, right);
+            int floor = 0, empty = 0;
+            double worst = 0;
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const glm::dvec3 ray = ahead + (2 * x + 1 - width) / double(width) * right +
+                                           (2 * y + 1 - height) / double(width) * down;
+                    const glm::dvec3 at = eye - eye.z / ray.z * ray;
+                    const double u = at.x + 0.5, v = 0.5 - at.y;
+                    // Well within the picture, whose far edges are thrown by as much as the bound.
+                    if (!(ray.z < 0 && std::fmin(u, 1 - u) > 0.1 && std::fmin(v, 1 - v) > 0.1)) continue;
+                    ++floor;
+                    const float* const shows = &points[static_cast<std::size_t>(2 * (y * width + x))];
+                    if (shows[0] < 0) {
+                        ++empty;
+                        continue;
+                    }
+                    const glm::dvec3 drawn = glm::dvec3(shows[0] - 0.5, 0.5 - shows[1], 0) - eye;
+                    const double scale = 0.5 * width / glm::dot(drawn, ahead);
+                    worst = std::fmax(worst,
+                                      std::hypot(scale * glm::dot(drawn, right) - (x + 0.5 - 0.5 * width),
+                                                 scale * glm::dot(drawn, down) - (y + 0.5 - 0.5 * height)));
+                }
+            EXPECT_GT(floor, 4000);
+            // Steep blocks that are all in front of the camera are drawn by their linear maps, which may not meet.
+            EXPECT_LE(empty, block > 4 ? floor / 20 : 0) << block;
+            EXPECT_LE(worst, bound + 1e-3) << block;
+        }
+    // Straight through the floor: what is nearer than the near plane is counted.
+    Scene scene;
+    scene.pose = {.position = {0, 0, 1e-4}, .target = {0, 0, -1}};
+    DrapeOptions options;
+    options.scheme = DrapeScheme::oka;
+    const Shown shown(scene, options);
+    EXPECT_EQ(Drape(shown.tree(), shown.camera(), scene.picture, options).left_out(), 0);
+    scene.pose = {.position = {0, 0, 1e-6}, .target = {0, 0.5, 0}, .up = {0, 0, 1}};
+    const Shown grazing(scene, options);
+    EXPECT_GT(Drape(grazing.tree(), grazing.camera(), scene.picture, options).left_out(), 0);
+}
+
 /// Counts how often it is asked for ranges.
 class CountedSurface final : public DrapedSurface {
   public:

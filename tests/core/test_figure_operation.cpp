@@ -171,6 +171,23 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
     EXPECT_THAT(error_of({{"camera", "1,2,1e300"}}), HasSubstr("must be three numbers from -1e+09 to 1e+09"));
     EXPECT_THAT(error_of({{"place", "1"}}), HasSubstr("place=1"));
     EXPECT_THAT(error_of({{"light", "0,0,0"}}), HasSubstr("light=0,0,0: must not be 0,0,0"));
+    for (const char* key : {"red", "green", "blue", "let"}) {
+        EXPECT_THAT(error_of({{key, "x"}}), HasSubstr("is of solid=formula alone")) << key;
+        EXPECT_THAT(error_of({{"solid", "wood"}, {key, "x"}}), HasSubstr("is of solid=formula alone")) << key;
+        EXPECT_THAT(error_of({{"solid", "formula"}, {key, "k=nosuch"}}), HasSubstr(key)) << key;
+    }
+    EXPECT_THAT(error_of({{"solid", "formula"}, {"red", "q+1"}}),
+                AllOf(HasSubstr("red=q+1"), HasSubstr("q")));
+    EXPECT_THAT(error_of({{"solid", "stone"}}), AllOf(HasSubstr("solid=stone"), HasSubstr("marble")));
+    for (const char* samples : {"0", "17", "nan", "2147483648"})
+        EXPECT_THAT(error_of({{"solid_samples", samples}}), HasSubstr("must be an integer from 1 to 16"));
+    for (const char* scale : {"0", "nan", "inf", "-1"})
+        EXPECT_THAT(error_of({{"solid_scale", scale}}), HasSubstr("must be a number from 0.001 to 1e+06"));
+    for (const char* scale : {"nan", "inf", "2e6"})
+        EXPECT_THAT(error_of({{"bump_scale", scale}}), HasSubstr("must be a number from -1e+06 to 1e+06"));
+    for (const char* key : {"solid", "bump"})
+        EXPECT_THAT(error_of({{"style", "depth"}, {key, "wood"}}),
+                    HasSubstr("is of styles shaded and textured alone"));
     EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5"}, {"style", "outline"}}),
                 HasSubstr("viewport=0.5,0.5,0.5: must be x,y,a,b"));
     EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5,0"}, {"style", "stick"}}), HasSubstr("from 1e-04 to 10"));

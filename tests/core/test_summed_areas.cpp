@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "anamorph/image/pixel.h"
@@ -201,6 +202,104 @@ TEST(SummedAreas, AStripOfAnyLengthIsRead) {
     float mean = 0;
     SummedAreas(source).mean(0.5, 29999.5, 1, 1, Wrap::clamp, &mean);
     EXPECT_EQ(mean, load_channel(texels.at(0, 29999, 0), PixelType::uint8));
+}
+
+/// A source that counts what is read, or cannot be read.
+class CountedTexels final : public Source {
+  public:
+    CountedTexels(const Source& base, bool fails) : m_base(base), m_fails(fails) {}
+    PixelType type() const noexcept override { return m_base.type(); }
+    int channels() const noexcept override { return m_base.channels(); }
+    int unassociated_alpha() const noexcept override { return m_base.unassociated_alpha(); }
+    int levels() const noexcept override { return 1; }
+    Size size(int level) const noexcept override { return m_base.size(level); }
+    bool read(int level, const Box& box, std::byte* texels, std::ptrdiff_t stride) const noexcept override {
+        pixels += std::int64_t{box.width()} * box.height();
+        return !m_fails && m_base.read(level, box, texels, stride);
+    }
+    mutable std::int64_t pixels = 0;
+
+  private:
+    const Source& m_base;
+    bool m_fails;
+};
+
+TEST(SummedAreas, OnlyTilesThatAreAskedForAreRead) {
+    Texels texels({4096, 4096}, 3, PixelType::uint8);
+    texels.fill([](int x, int y, int c) { return (x * 31 + y * 17 + c * 5) % 256 / 255.0; });
+    const MemorySource memory = texels.source();
+    const CountedTexels source(memory, false);
+    const SummedAreas sums(source);
+    EXPECT_EQ(source.pixels, 0);
+    float pixel[3];
+    ASSERT_TRUE(sums.mean(1000, 2000, 100, 90, Wrap::clamp, pixel));
+    EXPECT_LE(source.pixels, 4 * SummedAreas::kTile * SummedAreas::kTile);
+    // All of it in order, as a small picture of it reads it: a third as many bytes as a table of it had are the most.
+    std::vector<float> first;
+    std::size_t most = 0;
+    for (int y = 80; y < 4096; y += 160)
+        for (int x = 80; x < 4096; x += 160) {
+            ASSERT_TRUE(sums.mean(x, y, 170, 170, Wrap::clamp, pixel));
+            first.insert(first.end(), pixel, pixel + 3);
+            most = std::max(most, sums.bytes());
+        }
+    EXPECT_LE(most, SummedAreas::kMostBytes + (std::size_t{1} << 20));
+    EXPECT_GT(most, std::size_t{1} << 24);
+    // Each tile was made about once.
+    EXPECT_LE(source.pixels, std::int64_t{4096} * 4096 * 5 / 4);
+    // In another order, with tables that were forgotten in between: the same bits.
+    std::size_t k = first.size();
+    for (int row = 25; row >= 0; --row)
+        for (int column = 25; column >= 0; --column) {
+            if (80 + row * 160 >= 4096 || 80 + column * 160 >= 4096) continue;
+            ASSERT_TRUE(sums.mean(80 + column * 160, 80 + row * 160, 170, 170, Wrap::clamp, pixel));
+            k -= 3;
+            for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(pixel[c], first[k + c]);
+        }
+    // What cannot be read says so.
+    const CountedTexels broken(memory, true);
+    pixel[0] = 7;
+    EXPECT_FALSE(SummedAreas(broken).mean(5, 5, 2, 2, Wrap::clamp, pixel));
+    EXPECT_EQ(pixel[0], 0);
+    EXPECT_FALSE(SummedAreas(broken).mean_over_poles(5, 5, 2, 2, pixel));
+}
+
+TEST(SummedAreas, RectanglesOverTilesAreThoseOfAllTexels) {
+    for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32})
+        for (const int alpha : {-1, 1}) {
+            Texels texels({300, 270}, 2, type);
+            std::mt19937 random(11);
+            texels.fill([&](int x, int, int) {
+                return (type == PixelType::float32 && x > 200 ? 1e-3 : 1) *
+                       std::uniform_real_distribution<double>(0, 1)(random);
+            });
+            expect_means(texels, alpha, 4, 40, 6e-8);
+        }
+}
+
+TEST(SummedAreas, ThreadsThatForgetAndMakeTilesAgree) {
+    Texels texels({3000, 2800}, 3, PixelType::half);
+    texels.fill([](int x, int y, int c) { return (x * 31 + y * 17 + c * 5) % 256 / 255.0; });
+    const MemorySource source = texels.source();
+    const SummedAreas sums(source);
+    const auto walk = [&](int from) {
+        double sum = 0;
+        float pixel[3];
+        for (int k = 0; k < 900; ++k) {
+            const int at = (k + from) % 900;
+            EXPECT_TRUE(sums.mean(50 + at % 30 * 97, 50 + at / 30 * 90, 150, 140, Wrap::mirror, pixel));
+            sum += std::floor(double{pixel[at % 3]} * 0x1p20);
+        }
+        return sum;
+    };
+    const double alone = walk(0);
+    std::vector<double> together(4);
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < 4; ++t)
+        threads.emplace_back([&, t] { together[t] = walk(static_cast<int>(t) * 225); });
+    for (std::thread& thread : threads) thread.join();
+    for (const double sum : together) EXPECT_EQ(sum, alone);
+    EXPECT_LE(sums.bytes(), SummedAreas::kMostBytes + (std::size_t{8} << 20));
 }
 
 TEST(SummedAreas, WhatIsNoNumberIsLocal) {

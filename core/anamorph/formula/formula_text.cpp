@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "anamorph/error.h"
+#include "anamorph/formula/solid_program.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
@@ -762,6 +763,26 @@ NamedValues names_of_displacement(Maker& m, double frame) {
             {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
 }
 
+/// By the stereographic projection of the unit sphere from the pole of the other half.
+NamedValues names_of(Maker& m, const SolidSetting& setting) {
+    const Value s = m.x(), t = m.y(), square = m.sum(m.square(s), m.square(t)), one = m.number(1),
+                below = m.sum(one, square);
+    const Value away = m.quotient(m.difference(one, square), below);
+    const auto twice = [&](const Value& a) { return m.quotient(m.product(m.number(2), a), below); };
+    const auto along = [&](int axis, const Value& unit) {
+        return m.product(m.number(setting.axes[static_cast<std::size_t>(axis)]), unit);
+    };
+    return {{"x", {along(0, twice(s))}},
+            {"y", {along(1, twice(t))}},
+            {"z", {along(2, setting.behind ? away : m.negated(away))}},
+            {"own_red", {m.number(setting.own[0])}},
+            {"own_green", {m.number(setting.own[1])}},
+            {"own_blue", {m.number(setting.own[2])}},
+            {"scale", {m.number(setting.scale)}},
+            {"frame", {m.number(setting.frame)}},
+            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+}
+
 /// What `parse` makes of a text. What is too much for a program is told of the text, too.
 template <class Parse>
 auto named(const std::string& name, const std::string& text, const Parse& parse) {
@@ -936,6 +957,15 @@ SpaceFormula parse_displacement(const DisplacementText& text, double frame) {
     const std::vector<Value> moved = values_of(
         maker, names, {}, text.let, {{"x", or_zero(text.x)}, {"y", or_zero(text.y)}, {"z", or_zero(text.z)}});
     return space_formula("x, y and z", graph, maker, moved);
+}
+
+SpaceFormula parse_solid(const SolidText& text, const SolidSetting& setting) {
+    Graph graph;
+    Maker maker(graph);
+    NamedValues names = names_of(maker, setting);
+    return space_formula("red, green and blue", graph, maker,
+                         values_of(maker, names, {}, text.let,
+                                   {{"red", text.red}, {"green", text.green}, {"blue", text.blue}}));
 }
 
 bool operator==(const SpaceFormula& a, const SpaceFormula& b) {

@@ -182,8 +182,7 @@ bool PointSampler::sample(Filter filter, const FootprintChooser& chooser, const 
 bool PointSampler::mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept {
     if (!m_sums) m_sums = m_source.summed_areas();
     if (!m_sums) return false;
-    m_sums->mean(x, y, rectangle.x_i, rectangle.y_j, m_wrap, pixel);
-    return true;
+    return m_sums->mean(x, y, rectangle.x_i, rectangle.y_j, m_wrap, pixel);
 }
 
 }  // namespace anamorph

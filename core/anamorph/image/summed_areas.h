@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means over rectangles of a source in a time that does not depend on their size (Crow 1984).
+// Means over rectangles of a source, whatever their size, of all texels (Crow 1984).
 //
 // A table holds, for each texel, the sum of all texels above and to the left of it; that over a rectangle of whole texels
-// is S(x1, y1) - S(x0, y1) - S(x1, y0) + S(x0, y0). Sums are integers, in units of a power of two such that no sum of a
-// channel reaches 2^62: differences are exact however many texels lie before them. uint8 and uint16 lose nothing, with
-// alpha or without; half and float are rounded to the unit, at most 2^-60 of the sum of all magnitudes of the channel.
+// is S(x1, y1) - S(x0, y1) - S(x1, y0) + S(x0, y0). Each tile of kTile texels either way has a table of its own, which is made when it
+// is first asked for, and not kept where many others were asked for since: a rectangle is the sum of its parts in tiles. Sums are
+// integers: uint8 and uint16 lose nothing, with alpha or without, and take 32 bits but for uint16 with alpha; half and float are rounded to a
+// unit, a power of two that is at most 2^-60 of the sum of all magnitudes of the channel in the tile.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -18,11 +22,21 @@
 
 namespace anamorph {
 
-/// The table of a source's level 0. Thread safe once it is made.
+/// The tables of a source's level 0. Thread safe; the same bits for any order of reading.
 class SummedAreas {
   public:
-    /// Reads all of the source, twice. Throws std::bad_alloc, and Error where it cannot be read.
+    static constexpr int kTile = 128;
+    /// Tables that are kept take no more than this, or one for each thread that reads. Bytes.
+    static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+
+    /// Keeps a reference to the source, of which nothing is read yet. Throws std::bad_alloc.
     explicit SummedAreas(const Source& source);
+    ~SummedAreas();
+    SummedAreas(const SummedAreas&) = delete;
+    SummedAreas& operator=(const SummedAreas&) = delete;
+
+    /// The bytes that tables take now.
+    std::size_t bytes() const noexcept { return m_bytes.load(std::memory_order_relaxed); }
 
     /// Writes the mean over the rectangle of width x height texels about (x, y), in which texels are squares
     /// of one color, to `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample
@@ -30,36 +44,41 @@ class SummedAreas {
     /// bilinearly. Beyond the edges as `wrap`, where automatic is black; beside black, texels beyond the edges of
     /// the source's picture stand for themselves, and other borders do without them. A texel that is no number
     /// makes no number of its channel's means over it, and an infinite one infinite ones, unless less than
-    /// kSameTexel (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
-    void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
+    /// kSameTexel (weightless.h) of its side is covered; where (x, y) is no number, means are 0. False where the source cannot
+    /// be read, or there is no memory; means are 0 then.
+    bool mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
 
     /// Writes the mean over a rectangle of a picture in latitudes and longitudes, all around: left and right
     /// it repeats itself, and beyond its upper and lower edges, the poles, it goes on half a turn farther.
-    /// Sides above those of the picture count as these.
-    void mean_over_poles(double x, double y, double width, double height, float* pixel) const noexcept;
+    /// Sides above those of the picture count as these. Returns as mean() does.
+    bool mean_over_poles(double x, double y, double width, double height, float* pixel) const noexcept;
 
   private:
-    class Texels;
+    struct Tile;
+    struct Slot;
     struct Part;
+    struct Sums;
 
-    /// The number of a corner of the table's texels, counted from its own.
-    std::size_t at(int x, int y) const {
-        return (static_cast<std::size_t>(y) * (static_cast<std::size_t>(m_extent.width()) + 1) +
-                static_cast<std::size_t>(x)) *
-               m_units.size();
-    }
-    void choose_units(Texels& texels);
-    void add_up(Texels& texels);
+    /// The table of tile (column, row), made if need be; null where it cannot be.
+    std::shared_ptr<const Tile> tile(int column, int row) const noexcept;
+    std::shared_ptr<const Tile> make_tile(int column, int row) const;
+    void forget_some() const noexcept;
     void clear(float* pixel) const noexcept;
-    void mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept;
+    bool mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept;
+    bool add(const Part& part, double weight_x, double weight_y, const Box& texels,
+             std::span<Sums> sums) const noexcept;
 
+    const Source& m_source;
     Size m_size;
-    Box m_extent;                       ///< the texels that the table has
-    std::vector<double> m_units;        ///< units of the sums, channel by channel
-    std::vector<double> m_scales;       ///< units of the values, channel by channel
-    std::vector<std::uint64_t> m_sums;  ///< modulo 2^64
-    /// Counts of texels that are no numbers, +infinite and -infinite; each empty where none is.
-    std::array<std::vector<std::uint64_t>, 3> m_special;
+    Box m_extent;                  ///< the texels that the tables have
+    std::vector<double> m_scales;  ///< units of the values, channel by channel
+    int m_columns, m_rows;         ///< of tiles
+    std::unique_ptr<Slot[]> m_slots;
+    static constexpr std::size_t kLocks = 64;
+    mutable std::array<std::mutex, kLocks> m_locks;  ///< of the slots, by their numbers
+    mutable std::mutex m_forgetting;
+    mutable std::size_t m_hand = 0;  ///< the slot that is next to be forgotten
+    mutable std::atomic<std::size_t> m_bytes{0};
 };
 
 }  // namespace anamorph

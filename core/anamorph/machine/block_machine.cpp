@@ -387,6 +387,13 @@ class Drawer {
     std::vector<double> m_nearest;  ///< of the centres of the blocks that were drawn at a pixel
 };
 
+/// May a block cover a pixel?
+bool is_on_screen(const BlockOnScreen& block, const Size& screen) {
+    if (block.is_flat()) return false;
+    const PixelRange columns = block.columns(screen), rows = block.rows(screen);
+    return columns.first <= columns.last && rows.first <= rows.last;
+}
+
 /// Marks the pixels that lie in a block.
 void mark(const BlockOnScreen& block, const BlockFrame& frame, std::vector<bool>& marks) {
     if (block.is_flat()) return;
@@ -419,7 +426,12 @@ BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedS
     for (int j = 0; j < count.height; ++j)
         for (int i = 0; i < count.width; ++i) {
             surface::OkaBlock block;
-            if (!surface::oka_block(surface, camera, picture, cut, i, j, block)) continue;
+            const bool made = surface::oka_block(surface, camera, picture, cut, i, j, block);
+            if (!made ||
+                !is_on_screen({block, picture, frame.screen, machine.block, NoRounding{}, NoRounding{}},
+                              frame.screen))
+                frame.counts.left_out += surface::oka_block_is_cut(surface, camera, picture, cut, i, j);
+            if (!made) continue;
             ++frame.counts.blocks;
             mark({block, picture, frame.screen, machine.block, NoRounding{}, NoRounding{}}, frame, covered);
             const BlockOnScreen on_screen(block, picture, frame.screen, machine.block, coordinate,

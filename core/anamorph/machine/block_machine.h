@@ -106,6 +106,8 @@ struct BlockCounts {
         0;                    ///< cycles of the pixel processor, whose units share the pixels of a segment
     std::int64_t cracks = 0;  ///< pixels that lie in a block but by rounding in none
     std::int64_t misordered = 0;  ///< pixels that show a block where one was drawn whose centre is nearer
+    std::int64_t left_out =
+        0;  ///< blocks that may be in view where no linear map shows them (oka_block_is_cut)
 };
 
 /// A frame as the machine draws it: for each pixel of the screen, row by row, the block that was drawn last,

@@ -47,7 +47,7 @@ class BlockPixels::Reader {
                 const double share = (dx ? right : 1 - right) * (dy ? below : 1 - below);
                 // What has no weight is not looked at: it may be no number.
                 if (share == 0) continue;
-                store(i + dx, j + dy);
+                if (!store(i + dx, j + dy)) return false;
                 for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += share * double(m_texel[c]);
             }
         for (std::size_t c = 0; c < m_sum.size(); ++c) pixel[c] = static_cast<float>(m_sum[c]);
@@ -68,20 +68,23 @@ class BlockPixels::Reader {
         return m_window_reader.get(0, 0, {i - kRoom, j - kRoom, i + kRoom, j + kRoom}, m_window);
     }
     /// The texel (i, j) as the memory holds it.
-    void store(int i, int j) {
-        if (m_sums)
-            m_sums->mean(i + 0.5, j + 0.5, m_width, m_height, m_pixels.m_border.wrap(), m_texel.data());
-        else
+    bool store(int i, int j) {
+        if (m_sums) {
+            if (!m_sums->mean(i + 0.5, j + 0.5, m_width, m_height, m_pixels.m_border.wrap(), m_texel.data()))
+                return false;
+        } else {
             load_channels(m_window.texels + (j - m_window.box.y0) * m_window.row_stride +
                               std::ptrdiff_t{i - m_window.box.x0} * m_channels * size_of(m_window.type),
                           m_window.type, m_channels, m_texel.data());
-        if (m_pixels.m_texel_bits == 0) return;
+        }
+        if (m_pixels.m_texel_bits == 0) return true;
         const double most = std::ldexp(1.0, m_pixels.m_texel_bits) - 1;
         for (float& value : m_texel)
             value =
                 std::isnan(value)
                     ? 0
                     : static_cast<float>(std::nearbyint(std::clamp(double(value), 0.0, 1.0) * most) / most);
+        return true;
     }
 
     const BlockPixels& m_pixels;

@@ -86,7 +86,7 @@ struct ControlMesh {
     std::vector<Level> levels;
 };
 
-/// Pairs of points: (x, y) in the target comes from (u, v) in the source.
+/// Pairs of points: (x, y) in the target comes from (u, v) in the source; by themselves, or as the corners of polygons.
 struct ControlPoints {
     static constexpr int kMaxPoints = 1 << 17;
 
@@ -96,6 +96,10 @@ struct ControlPoints {
     };
     Units units = Units::pixels;
     std::vector<Pair> pairs;
+    /// Polygons whose corners are pairs, by their numbers, of any shape: along each of their sides the map is one cubic, by what it is
+    /// and how it changes at the ends (Hermite), whatever lies beside it. They do not cross one another.
+    std::vector<std::vector<int>> polygons = {};
+    static constexpr std::size_t kMaxCorners = std::size_t{1} << 19;
     /// Pixels of the target on either side, across and down, that do not count for how the map goes on beyond the points.
     Size overscan = {};
 };

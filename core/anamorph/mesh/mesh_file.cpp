@@ -162,7 +162,7 @@ ControlMesh control_mesh(const Entry& top) {
 }
 
 ControlPoints control_points(const Entry& top) {
-    top.expect_object({"units", "points"});
+    top.expect_object({"units", "points", "polygons"});
     ControlPoints points;
     points.units = units_of(top);
     const Entry list = top.at("points");
@@ -172,6 +172,16 @@ ControlPoints control_points(const Entry& top) {
         const Entry pair = list[i];
         pair.expect_tuple(4);
         points.pairs.push_back({pair[0].number(), pair[1].number(), pair[2].number(), pair[3].number()});
+    }
+    if (!top.has("polygons")) return points;
+    const Entry polygons = top.at("polygons");
+    const std::size_t polygon_count = polygons.expect_list(ControlPoints::kMaxCorners / 3);
+    points.polygons.resize(polygon_count);
+    for (std::size_t n = 0; n < polygon_count; ++n) {
+        const Entry polygon = polygons[n];
+        const std::size_t corners = polygon.expect_list(ControlPoints::kMaxCorners);
+        for (std::size_t k = 0; k < corners; ++k)
+            points.polygons[n].push_back(polygon[k].whole(0, ControlPoints::kMaxPoints));
     }
     return points;
 }

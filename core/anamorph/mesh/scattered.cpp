@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <boost/polygon/voronoi.hpp>
 #include <cmath>
+#include <deque>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
@@ -177,6 +180,152 @@ std::vector<Corners> triangulate(const std::vector<Node>& nodes, std::size_t giv
         }
     }
     return triangles;
+}
+
+/// Makes segments between nodes edges of a triangulation.
+class EdgeForcer {
+  public:
+    EdgeForcer(const std::vector<Node>& nodes, std::vector<Corners>& triangles)
+        : m_nodes(nodes), m_triangles(triangles), m_around(nodes.size()) {
+        for (std::size_t t = 0; t < triangles.size(); ++t) note(t);
+    }
+
+    /// `what` begins what an error says.
+    void force(std::size_t a, std::size_t b, const std::string& what) {
+        std::deque<Edge> crossing = crossed_by(a, b, what);
+        // Each flip of a convex pair takes one away, or turns it; more rounds than this say that there is no end.
+        std::size_t left = 64 * (crossing.size() + 4) * (crossing.size() + 4);
+        while (!crossing.empty()) {
+            if (left-- == 0) throw Error(what + " cannot be an edge: points about it are nearly on a line");
+            const Edge edge = crossing.front();
+            crossing.pop_front();
+            const std::size_t k = opposite(edge.first, edge.second), l = opposite(edge.second, edge.first);
+            if (!(side(k, l, edge.first) * side(k, l, edge.second) < 0)) {
+                crossing.push_back(edge);
+                continue;
+            }
+            flip(edge.first, edge.second, k, l);
+            if (k != a && k != b && l != a && l != b && side(a, b, k) * side(a, b, l) < 0)
+                crossing.emplace_back(k, l);
+        }
+        m_forced.insert(std::minmax(a, b));
+    }
+
+  private:
+    using Edge = std::pair<std::size_t, std::size_t>;
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    /// The side of the line from a to b that c is on; 0 where rounding does not tell.
+    int side(std::size_t a, std::size_t b, std::size_t c) const {
+        const Number area = cross(m_nodes[b].at - m_nodes[a].at, m_nodes[c].at - m_nodes[a].at);
+        return !(area.size() > area.error) ? 0 : area.value > 0 ? 1 : -1;
+    }
+    void note(std::size_t t) {
+        const Corners& c = m_triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            m_left[{c[k], c[(k + 1) % 3]}] = t;
+            m_around[c[k]].push_back(t);
+        }
+    }
+    void forget(std::size_t t) {
+        const Corners& c = m_triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            m_left.erase({c[k], c[(k + 1) % 3]});
+            std::erase(m_around[c[k]], t);
+        }
+    }
+    /// The third corner of the triangle to the left of an edge.
+    std::size_t opposite(std::size_t from, std::size_t to) const {
+        const auto found = m_left.find({from, to});
+        if (found == m_left.end()) return kNone;
+        for (const std::size_t corner : m_triangles[found->second])
+            if (corner != from && corner != to) return corner;
+        return kNone;
+    }
+    bool has(std::size_t a, std::size_t b) const { return m_left.count({a, b}) || m_left.count({b, a}); }
+
+    /// The edges that the segment from a to b crosses, in their order; from its right to its left.
+    std::deque<Edge> crossed_by(std::size_t a, std::size_t b, const std::string& what) const {
+        if (has(a, b)) return {};
+        const auto expect_off = [&](std::size_t c) {
+            if (c != b && side(a, b, c) == 0)
+                throw Error(what + " must not go through a point: points[" + std::to_string(c) +
+                            "] lies on it");
+        };
+        std::deque<Edge> edges;
+        for (const std::size_t t : m_around[a]) {
+            const Corners& c = m_triangles[t];
+            const std::size_t k = c[0] == a ? 0 : c[1] == a ? 1 : 2;
+            const std::size_t p = c[(k + 1) % 3], q = c[(k + 2) % 3];
+            // Counterclockwise from p on the right to q on the left: the segment lies between them.
+            if (side(a, b, p) > 0 || side(a, b, q) < 0) continue;
+            expect_off(p);
+            expect_off(q);
+            edges.emplace_back(p, q);
+            break;
+        }
+        while (!edges.empty()) {
+            const auto [p, q] = edges.back();
+            if (m_forced.count(std::minmax(p, q)))
+                throw Error(what + " must not cross the side from point " + std::to_string(p) + " to " +
+                            std::to_string(q));
+            const std::size_t next = opposite(q, p);
+            if (next == b) return edges;
+            if (next == kNone) break;
+            expect_off(next);
+            if (edges.size() > m_triangles.size()) break;
+            if (side(a, b, next) < 0)
+                edges.emplace_back(next, q);
+            else
+                edges.emplace_back(p, next);
+        }
+        throw Error(what + " cannot be an edge: points about it are nearly on a line");
+    }
+    /// Puts the edge from k to l in place of that from i to j; k is on its left.
+    void flip(std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+        const std::size_t s = m_left.at({i, j}), t = m_left.at({j, i});
+        forget(s);
+        forget(t);
+        m_triangles[s] = {i, l, k};
+        m_triangles[t] = {l, j, k};
+        note(s);
+        note(t);
+    }
+
+    const std::vector<Node>& m_nodes;
+    std::vector<Corners>& m_triangles;
+    std::map<Edge, std::size_t> m_left;
+    std::vector<std::vector<std::size_t>> m_around;
+    std::set<std::pair<std::size_t, std::size_t>> m_forced;
+};
+
+/// Makes all sides of the polygons edges.
+void force_sides(const ControlPoints& points, const std::vector<Node>& nodes, std::vector<Corners>& triangles,
+                 const std::string& name) {
+    if (points.polygons.empty()) return;
+    EdgeForcer forcer(nodes, triangles);
+    std::size_t corners = 0;
+    for (std::size_t n = 0; n < points.polygons.size(); ++n) {
+        const std::vector<int>& polygon = points.polygons[n];
+        const std::string what = name + ": polygons[" + std::to_string(n) + "]";
+        if (polygon.size() < 3)
+            throw Error(what, std::to_string(polygon.size()) + " corners", "must have at least 3");
+        corners += polygon.size();
+        if (corners > ControlPoints::kMaxCorners)
+            throw Error(name + ": polygons", std::to_string(corners) + " corners",
+                        "must have at most " + std::to_string(ControlPoints::kMaxCorners));
+        for (const int corner : polygon)
+            if (corner < 0 || static_cast<std::size_t>(corner) >= points.pairs.size())
+                throw Error(
+                    what, std::to_string(corner),
+                    "must be numbers of points, from 0 to " + std::to_string(points.pairs.size() - 1));
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const int a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+            if (a == b) throw Error(what, std::to_string(a), "must not have one corner twice in a row");
+            forcer.force(static_cast<std::size_t>(a), static_cast<std::size_t>(b),
+                         what + ": the side from point " + std::to_string(a) + " to " + std::to_string(b));
+        }
+    }
 }
 
 void set_gradients(std::vector<Node>& nodes, std::size_t given, const std::vector<Corners>& triangles) {
@@ -407,7 +556,8 @@ Scattered::Scattered(const ControlPoints& points, const Size& from, const Size& 
     const double x_x = m_scale.x + rounded(affine.dx.x), y_y = m_scale.y + rounded(affine.dy.y);
     m_orientation = x_x * y_y - rounded(affine.dx.y) * rounded(affine.dy.x) < 0 ? -1 : 1;
 
-    const std::vector<Corners> triangles = triangulate(nodes, given, box, name);
+    std::vector<Corners> triangles = triangulate(nodes, given, box, name);
+    force_sides(points, nodes, triangles, name);
     set_gradients(nodes, given, triangles);
     m_triangles.reserve(3 * triangles.size());
     for (const Corners& t : triangles) add_cubics(nodes, t, from, m_triangles);

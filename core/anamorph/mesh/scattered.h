@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map through pairs of points at any places: their Delaunay triangulation in the target, and on each
+// The map through pairs of points at any places: their Delaunay triangulation in the target, in which sides of given polygons are edges
+// by flips of those that cross them (Sloan 1993), and on each
 // triangle Clough and Tocher's element, three cubics that join to a C1 map (Clough and Tocher 1965; in Bezier
 // form as in Farin 1986, "Triangular Bernstein-Bezier patches", section 7).
 //
@@ -72,7 +73,8 @@ struct CubicTriangle {
 class Scattered {
   public:
     /// Triangulates points. `from` is the target, `to` the source. Throws Error that names `name` and the
-    /// point: one that is not a number, two at the same place, none at all.
+    /// point: one that is not a number, two at the same place, none at all; and the polygon: one whose corners are no
+    /// points, or with a side that another side crosses or a point lies on.
     Scattered(const ControlPoints& points, const Size& from, const Size& to, double amount,
               const std::string& name = "points");
 

@@ -48,6 +48,7 @@ class SolvedByBlocks final : public SolvedPicture {
                 {"anamorph:saturated_pixels", static_cast<double>(counts.saturated)},
                 {"anamorph:cracks", static_cast<double>(counts.cracks)},
                 {"anamorph:misordered_pixels", static_cast<double>(counts.misordered)},
+                {"anamorph:blocks_left_out", static_cast<int>(counts.left_out)},
                 {"anamorph:frame_ms", m_schedule.frame_ms()},
                 {"anamorph:shown_ms", m_schedule.shown_ms()},
                 {"anamorph:bottleneck", m_schedule.bottleneck().name}};

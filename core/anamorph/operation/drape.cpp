@@ -422,6 +422,7 @@ class SolvedDrape final : public SolvedPicture {
                           {"anamorph:patches", static_cast<int>(drape.patches())}};
         const std::optional<int> holes = m_parts.counts_holes ? drape.holes(parallel_for) : std::nullopt;
         if (holes) all.push_back({"anamorph:holes", *holes});
+        if (const auto parts = drape.left_out()) all.push_back({"anamorph:blocks_left_out", *parts});
         return all;
     }
     std::unique_ptr<const SolvedPicture> of_moved() const override {

@@ -10,6 +10,7 @@
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/figure/image/mrasel_maps.h"
+#include "anamorph/figure/image/solid_texture.h"
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script.h"
 #include "anamorph/figure/outline/fit.h"
@@ -131,6 +132,42 @@ ParameterTable style_rows() {
     };
 }
 
+/// Colors by formulas, and heights.
+ParameterTable relief_rows() {
+    using namespace rows;
+    std::vector<std::string> names = {"none"};
+    std::string what =
+        "of styles shaded and textured, a color at every point of a body, as if it were cut out of a block: "
+        "none";
+    for (const figure::SolidPreset& preset : figure::solid_presets()) {
+        names.push_back(preset.name);
+        what += "; " + preset.name + ", " + preset.documentation;
+    }
+    names.push_back("formula");
+    return {
+        choice("solid", "none", names, what + "; formula, by red, green and blue"),
+        number("solid_scale", "units", "100", 0.001, 1e6, "the length that formulas of solid call scale"),
+        whole("solid_samples", "", "4", 1, figure::kMostSolidSamples,
+              "of solid: a pixel's color is the mean at this number of points of it either way; what is "
+              "finer is not "
+              "averaged away"),
+        text("red",
+             "of solid=formula, a formula of x, y and z, the point in the body's own axes from its centre, "
+             "in units, of "
+             "own_red, own_green and own_blue, the body's color, from 0 to 1 as the result is, of scale and "
+             "of frame; "
+             "own_red by default"),
+        text("green", "the same; own_green by default"),
+        text("blue", "the same; own_blue by default"),
+        text("let", "definitions before these, as in k=0.3;c=cos(k)"),
+        file("bump",
+             "of styles shaded and textured: a picture of heights around each body, by mapping: the "
+             "brightness, the mean "
+             "of up to three channels, turns normals (Blinn 1978)"),
+        number("bump_scale", "units", "10", -1e6, 1e6, "how high brightness 1 is"),
+    };
+}
+
 /// Who sees them, before what.
 ParameterTable figure_view_rows() {
     using namespace rows;
@@ -156,6 +193,21 @@ ParameterTable line_rows() {
     using namespace rows;
     return {
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
+        enumeration("outlines", "limbs",
+                    {{"limbs", figure::OutlineStyle::limbs},
+                     {"levels", figure::OutlineStyle::levels},
+                     {"boxes", figure::OutlineStyle::boxes},
+                     {"contours", figure::OutlineStyle::contours},
+                     {"cylinders", figure::OutlineStyle::cylinders}},
+                    "of style outline: limbs, the outlines of bodies; levels, each figure as a dot, sticks, "
+                    "boxes or contours, the "
+                    "first that is within outline_tol of these (Fetter); boxes; contours, across each body's "
+                    "longest axis, as few "
+                    "as hold outline_tol; cylinders, with shadow lines, circular arcs, clip and crease, "
+                    "nothing hidden (Willmert)"),
+        number("outline_tol", "pixels", shortest(figure::kSimpleTolRow.standard), figure::kSimpleTolRow.least,
+               1e6,
+               "of outlines=levels and contours: how far what stands for bodies may be from their outlines"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
         numbers("viewport", -kInfinity,
                 "of styles outline and stick: x,y,a,b: the middle, from the upper left, and the half-axes of "
@@ -176,7 +228,8 @@ ParameterTable line_rows() {
 
 ParameterTable make_figure_table() {
     ParameterTable table;
-    for (const ParameterTable& part : {script_rows(), style_rows(), figure_view_rows(), line_rows()})
+    for (const ParameterTable& part :
+         {script_rows(), style_rows(), relief_rows(), figure_view_rows(), line_rows()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
@@ -295,6 +348,8 @@ LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
         add_textures(figure::read_motion(reader.text(file.name), short_name(file))->images());
     const auto backdrop = files.find("backdrop");
     if (backdrop != files.end()) linked.push_back({"picture/backdrop", backdrop->second.name, true});
+    const auto bump = files.find("bump");
+    if (bump != files.end()) linked.push_back({"picture/bump", bump->second.name, true});
     return linked;
 }
 
@@ -412,6 +467,32 @@ void read_viewport(const ParameterValues& values, figure::FigureLook& look) {
         throw Error("viewport", printable(text), "is of styles outline and stick alone");
 }
 
+/// Colors by formulas; of a text that is given for other values of solid nothing is kept in silence.
+void read_solid(const ParameterValues& values, figure::FigureLook& look) {
+    const std::string solid = values.text("solid");
+    for (const char* name : {"red", "green", "blue", "let"})
+        if (solid != "formula" && values.given(name))
+            throw Error(name, printable(values.text(name)), "is of solid=formula alone");
+    const bool shaded =
+        look.style == figure::FigureStyle::shaded || look.style == figure::FigureStyle::textured;
+    for (const char* name : {"solid", "bump"})
+        if (!shaded && values.given(name))
+            throw Error(name, printable(values.text(name)), "is of styles shaded and textured alone");
+    if (solid == "none") return;
+    figure::SolidLook own;
+    for (const figure::SolidPreset& preset : figure::solid_presets())
+        if (preset.name == solid) own.text = preset.text;
+    for (const auto& [name, to] : {std::pair{"red", &own.text.red}, std::pair{"green", &own.text.green},
+                                   std::pair{"blue", &own.text.blue}, std::pair{"let", &own.text.let}})
+        if (values.given(name)) *to = values.text(name);
+    own.scale = values.number("solid_scale");
+    own.samples = values.whole("solid_samples");
+    if (!values.toggle("antialias")) own.samples = 1;
+    // What is wrong with a text is said before a frame is drawn.
+    parse_solid(own.text, {});
+    look.solid = own;
+}
+
 /// A colour, or bands.
 void read_background(const ParameterValues& values, figure::FigureLook& look) {
     if (!values.given("background")) return;
@@ -447,9 +528,16 @@ FigureRequest read_request(const ParameterValues& values) {
     look.mapping = rows::chosen<figure::BodyMapping>(values, "mapping");
     read_filter(values, look);
     look.backdrop = values.given("backdrop");
+    read_solid(values, look);
+    look.bumps = values.given("bump");
+    look.bump_scale = values.number("bump_scale");
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
+    look.lines.style = rows::chosen<figure::OutlineStyle>(values, "outlines");
+    look.lines.simple_tol = values.number("outline_tol");
+    if (look.style != figure::FigureStyle::outline && values.given("outlines"))
+        throw Error("outlines", values.text("outlines"), "is of style outline alone");
     read_viewport(values, look);
     request.camera = three(values, "camera", -kFar, kFar);
     request.place = three(values, "place", -kFar, kFar);
@@ -468,8 +556,12 @@ class SolvedFigure final : public SolvedPicture {
     /// Rays meet the bodies themselves; only curved lines are made of chords.
     Attributes reached(const ParallelFor&) const override {
         const bool chords = m_style == figure::FigureStyle::outline;
-        return {{"anamorph:max_error", chords ? kChordError : 0.0},
-                {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
+        Attributes all = {{"anamorph:max_error", chords ? m_picture.simple_error() + kChordError : 0.0},
+                          {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
+        std::string names;
+        for (const std::string& name : m_picture.left_out()) names += (names.empty() ? "" : ", ") + name;
+        if (!names.empty()) all.push_back({"anamorph:left_out", names});
+        return all;
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
@@ -548,7 +640,13 @@ class Figures final : public Pictures {
                 picture.says.push_back({"oiio:ColorSpace", std::string("sRGB")});
         }
         const bool chords = m_request.look.style == figure::FigureStyle::outline;
-        picture.says.push_back({"anamorph:tol", chords ? kChordError : 0.0});
+        // Boxes and cylinders hold no tolerance: anamorph:max_error is what they come to.
+        const figure::DrawingOptions& lines = m_request.look.lines;
+        const bool holds =
+            lines.style == figure::OutlineStyle::levels || lines.style == figure::OutlineStyle::contours;
+        if (lines.style == figure::OutlineStyle::limbs || holds)
+            picture.says.push_back(
+                {"anamorph:tol", chords ? kChordError + (holds ? lines.simple_tol : 0) : 0.0});
         picture.says.push_back({"anamorph:frame", number});
         if (!m_request.missing.empty())
             picture.says.push_back({"anamorph:missing_textures", m_request.missing});

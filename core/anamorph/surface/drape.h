@@ -77,6 +77,9 @@ class Drape {
     /// The number of patches that the camera sees, or nearly so.
     std::size_t patches() const { return m_map->patches(); }
 
+    /// The number of parts of the paper's blocks that may be in view and are not drawn (OkaRaster::left_out); none of others.
+    std::optional<int> left_out() const { return m_map->left_out(); }
+
     /// The number of pixels within the surface that show nothing. None where facets share their edges; of the
     /// paper's blocks, those where facets within kCoverTol show something, also at all eight pixels around,
     /// which takes as long as drawing does. Nothing where the screen has more than kMostCounted pixels or

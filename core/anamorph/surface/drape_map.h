@@ -62,6 +62,10 @@ class DrapeMap final : public BlockMap {
     const Facets& facets() const;
     /// The number of patches that are drawn: the paper's blocks, or leaves of facets().
     std::size_t patches() const { return m_blocks ? m_blocks->count() : m_room->facets.leaves.size(); }
+    /// Of the paper's blocks, parts that may be in view and are not drawn (OkaRaster::left_out).
+    std::optional<int> left_out() const {
+        return m_blocks ? std::optional(static_cast<int>(m_blocks->left_out())) : std::nullopt;
+    }
     /// The facet that a point lies in: one of the two facets of one of the paper's blocks, else `facet` itself.
     const Facet& part_of(const Facet& facet, double u, double v) const;
     const Camera& camera() const { return m_camera; }

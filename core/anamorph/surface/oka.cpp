@@ -227,10 +227,72 @@ Size oka_block_count(const Size& picture, const OkaBlocks& blocks) {
     return {static_cast<int>(count(picture.width)), static_cast<int>(count(picture.height))};
 }
 
-bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
-               const OkaBlocks& blocks, int i, int j, OkaBlock& block) {
+namespace {
+
+/// The sides of a block that is halved `level` times, and how far one reaches from its centre, in u and in v.
+simd::ParallelogramGrid grid_of(const Size& picture, const OkaBlocks& blocks) {
     const glm::dvec2 sides = sides_of(picture, blocks);
-    const double side_u = sides.x, side_v = sides.y;
+    return {sides.x, sides.y, (sides.x + blocks.overlap / picture.width) / 2,
+            (sides.y + blocks.overlap / picture.height) / 2};
+}
+
+/// The part of 0 to 1 within `half` of a centre.
+Interval reach_of(double centre, double half) {
+    return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+/// Is a part of a surface certainly not in view: behind the near plane, or beyond one of the planes through the eye and an edge of
+/// the screen? Each is where a linear form of the place in space has one sign, so that it does not matter where the part is cut.
+bool is_out_of_view(const DrapedSurface& surface, const Camera& camera, const Interval& u,
+                    const Interval& v) {
+    if (u.lo > u.hi || v.lo > v.hi) return true;
+    const SurfaceRange range = surface.range(u, v);
+    // across x + down y + ahead z + constant in the camera's frame.
+    const auto form = [&](double across, double down, double ahead, double constant) {
+        const glm::dvec3 weights(across, down, ahead);
+        Interval sum(constant);
+        for (int i = 0; i < 3; ++i) sum += Interval(weights[i]) * Interval(camera.offset()[i]);
+        for (int axis = 0; axis < 3; ++axis) {
+            Interval weight(0);
+            for (int i = 0; i < 3; ++i) weight += Interval(weights[i]) * Interval(camera.matrix()[axis][i]);
+            sum += weight * range[static_cast<std::size_t>(axis)].c[0];
+        }
+        return sum;
+    };
+    if (form(0, 0, 1, -camera.near()).hi < 0) return true;
+    const double right = 0.5 * camera.screen().width, down = 0.5 * camera.screen().height;
+    for (const double side : {-1.0, 1.0})
+        if (form(side * camera.focal(), 0, -right, 0).lo > 0 ||
+            form(0, side * camera.focal(), -down, 0).lo > 0)
+            return true;
+    return false;
+}
+
+// A block's linear map is taken for what is seen of it where no point of its five is so much farther ahead than another.
+constexpr double kMostSteepness = 2;
+
+/// Is one of a block's five points behind the camera, or much nearer to it than another one? Points that are missing are neither.
+bool is_steep(const DrapedSurface& surface, const Camera& camera, const simd::ParallelogramGrid& grid, int i,
+              int j) {
+    const auto centre = [](int k, double side) { return (k + 0.5) * side; };
+    double near = HUGE_VAL, far = -HUGE_VAL;
+    const int beside[5][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    for (const auto& [across, down] : beside) {
+        const double depth =
+            camera.in_frame(surface.position(centre(i + across, grid.side_u), centre(j + down, grid.side_v)))
+                .z;
+        near = std::fmin(near, depth);
+        far = std::fmax(far, depth);
+    }
+    return near < camera.near() || far > kMostSteepness * near;
+}
+
+}  // namespace
+
+bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
+               const OkaBlocks& blocks, int i, int j, OkaBlock& block, int level) {
+    const simd::ParallelogramGrid grid = grid_of(picture, blocks).at(level);
+    const double side_u = grid.side_u, side_v = grid.side_v;
     // Where the centres of the block and of those beside, above and below it are seen, and their depths.
     const auto centre = [](int k, double side) { return (k + 0.5) * side; };
     const double u[] = {centre(i - 1, side_u), centre(i, side_u), centre(i + 1, side_u)},
@@ -248,13 +310,20 @@ bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& p
     if (!is_finite(block.centre) || !is_finite(block.by_u) || !is_finite(block.by_v)) return false;
     block.u = (i + 0.5) * side_u;
     block.v = (j + 0.5) * side_v;
-    const double half_u = (side_u + blocks.overlap / picture.width) / 2,
-                 half_v = (side_v + blocks.overlap / picture.height) / 2;
-    block.u0 = std::max(0.0, block.u - half_u);
-    block.u1 = std::min(1.0, block.u + half_u);
-    block.v0 = std::max(0.0, block.v - half_v);
-    block.v1 = std::min(1.0, block.v + half_v);
+    block.u0 = std::max(0.0, block.u - grid.half_u);
+    block.u1 = std::min(1.0, block.u + grid.half_u);
+    block.v0 = std::max(0.0, block.v - grid.half_v);
+    block.v1 = std::min(1.0, block.v + grid.half_v);
     return true;
+}
+
+bool oka_block_is_cut(const DrapedSurface& surface, const Camera& camera, const Size& picture,
+                      const OkaBlocks& blocks, int i, int j, int level) {
+    if (!camera.perspective()) return false;
+    const simd::ParallelogramGrid grid = grid_of(picture, blocks).at(level);
+    return is_steep(surface, camera, grid, i, j) &&
+           !is_out_of_view(surface, camera, reach_of((i + 0.5) * grid.side_u, grid.half_u),
+                           reach_of((j + 0.5) * grid.side_v, grid.half_v));
 }
 
 OkaRaster::OkaRaster(std::shared_ptr<const DrapedSurface> surface, const Camera& camera, const Size& picture,
@@ -268,11 +337,7 @@ OkaRaster::OkaRaster(std::shared_ptr<const DrapedSurface> surface, const Camera&
       m_columns((camera.screen().width + square - 1) / square),
       m_pool(std::move(pool)),
       m_room(m_pool->take()) {
-    const glm::dvec2 sides = sides_of(picture, blocks);
-    m_grid.side_u = sides.x;
-    m_grid.side_v = sides.y;
-    m_grid.half_u = (m_grid.side_u + blocks.overlap / picture.width) / 2;
-    m_grid.half_v = (m_grid.side_v + blocks.overlap / picture.height) / 2;
+    m_grid = grid_of(picture, blocks);
     find_blocks();
     m_most_by_u = std::sqrt(m_most_by_u);
     m_most_by_v = std::sqrt(m_most_by_v);
@@ -314,37 +379,91 @@ void OkaRaster::find_blocks() {
 
 /// Adds the blocks of a row that are on the screen.
 void OkaRaster::find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below) {
-    const Size& screen = m_camera.screen();
-    const double twice_u = 2 * m_grid.side_u, twice_v = 2 * m_grid.side_v, half_width = 0.5 * screen.width,
-                 half_height = 0.5 * screen.height;
+    const double twice_u = 2 * m_grid.side_u, twice_v = 2 * m_grid.side_v;
+    std::vector<std::int32_t>& behind = m_room->behind;
+    behind.clear();
     for (int i = 0; i < m_count.width; ++i) {
         const glm::dvec3& centre = here[i + 1];
         const glm::dvec3 by_u = (here[i + 2] - here[i]) / twice_u,
                          by_v = (below[i + 1] - above[i + 1]) / twice_v;
-        const double reach_x = std::fabs(by_u.x) * m_grid.half_u + std::fabs(by_v.x) * m_grid.half_v,
-                     reach_y = std::fabs(by_u.y) * m_grid.half_u + std::fabs(by_v.y) * m_grid.half_v;
-        // Written so that what is no number is not on the screen.
-        if (!(std::fabs(centre.x) < half_width + reach_x && std::fabs(centre.y) < half_height + reach_y))
-            continue;
-        const double area = by_u.x * by_v.y - by_v.x * by_u.y, square_u = square(by_u.x) + square(by_u.y),
-                     square_v = square(by_v.x) + square(by_v.y);
-        if (!(square_u + square_v <= kMostCondition * std::fabs(area)) || !std::isfinite(by_u.z + by_v.z))
-            continue;
-        m_most_by_u = std::max(m_most_by_u, square_u);
-        m_most_by_v = std::max(m_most_by_v, square_v);
-        const double inverse = 1 / area;
-        // A pixel more, for what this and the places of pixels lose.
-        const auto first = [](double at) { return static_cast<int>(std::max(at, 0.0)); };
-        const auto end = [](double at, int size) {
-            return static_cast<int>(std::min(at + 1.5, double(size)));
-        };
-        const double x = centre.x + half_width - 0.5, y = centre.y + half_height - 0.5;
-        m_room->blocks.push_back({centre.x, centre.y, centre.z, by_v.y * inverse, -by_v.x * inverse,
-                                  -by_u.y * inverse, by_u.x * inverse, by_u.z, by_v.z, i, row,
-                                  Box{first(x - reach_x), first(y - reach_y), end(x + reach_x, screen.width),
-                                      end(y + reach_y, screen.height)}});
-        m_room->squares.push_back(squares_of(m_room->blocks.back().pixels));
+        if (add(centre, by_u, by_v, i, row, 0) || !m_camera.perspective()) continue;
+        // Written so that a depth that is no number may be one behind the camera.
+        const double depths[] = {centre.z, here[i].z, here[i + 2].z, above[i + 1].z, below[i + 1].z};
+        const auto [near, far] = std::minmax_element(std::begin(depths), std::end(depths));
+        if (!std::isfinite(centre.z + by_u.z + by_v.z) || !(*far <= kMostSteepness * *near))
+            behind.push_back(i);
     }
+    for (std::size_t k = 0, end = 0; k < behind.size(); k = end) {
+        for (end = k + 1; end < behind.size() && behind[end] == behind[end - 1] + 1;) ++end;
+        add_parts_of_row(row, behind[k], behind[end - 1] + 1);
+    }
+}
+
+/// Adds a block, or a part of one, whose parallelogram is on the screen and no line. Is it on the screen?
+bool OkaRaster::add(const glm::dvec3& centre, const glm::dvec3& by_u, const glm::dvec3& by_v, int column,
+                    int row, int level) {
+    const Size& screen = m_camera.screen();
+    const double half_width = 0.5 * screen.width, half_height = 0.5 * screen.height;
+    const simd::ParallelogramGrid grid = level == 0 ? m_grid : m_grid.at(level);
+    const double reach_x = std::fabs(by_u.x) * grid.half_u + std::fabs(by_v.x) * grid.half_v,
+                 reach_y = std::fabs(by_u.y) * grid.half_u + std::fabs(by_v.y) * grid.half_v;
+    // Written so that what is no number is not on the screen.
+    if (!(std::fabs(centre.x) < half_width + reach_x && std::fabs(centre.y) < half_height + reach_y))
+        return false;
+    const double area = by_u.x * by_v.y - by_v.x * by_u.y, square_u = square(by_u.x) + square(by_u.y),
+                 square_v = square(by_v.x) + square(by_v.y);
+    if (!(square_u + square_v <= kMostCondition * std::fabs(area)) || !std::isfinite(by_u.z + by_v.z))
+        return true;
+    m_most_by_u = std::max(m_most_by_u, square_u);
+    m_most_by_v = std::max(m_most_by_v, square_v);
+    const double inverse = 1 / area;
+    // A pixel more, for what this and the places of pixels lose.
+    const auto first = [](double at) { return static_cast<int>(std::max(at, 0.0)); };
+    const auto end = [](double at, int size) { return static_cast<int>(std::min(at + 1.5, double(size))); };
+    const double x = centre.x + half_width - 0.5, y = centre.y + half_height - 0.5;
+    m_room->blocks.push_back({centre.x, centre.y, centre.z, by_v.y * inverse, -by_v.x * inverse,
+                              -by_u.y * inverse, by_u.x * inverse, by_u.z, by_v.z, column, row, level,
+                              Box{first(x - reach_x), first(y - reach_y), end(x + reach_x, screen.width),
+                                  end(y + reach_y, screen.height)}});
+    m_room->squares.push_back(squares_of(m_room->blocks.back().pixels));
+    return true;
+}
+
+/// Adds parts of blocks of a row: those of a run that is out of view are found out of view together.
+void OkaRaster::add_parts_of_row(int row, int first, int end) {
+    const Interval u(std::max(0.0, (first + 0.5) * m_grid.side_u - m_grid.half_u),
+                     std::min(1.0, (end - 0.5) * m_grid.side_u + m_grid.half_u));
+    if (is_out_of_view(*m_surface, m_camera, u, reach_of((row + 0.5) * m_grid.side_v, m_grid.half_v))) return;
+    if (end - first == 1) {
+        add_parts(first, row, 0);
+        return;
+    }
+    const int middle = (first + end) / 2;
+    add_parts_of_row(row, first, middle);
+    add_parts_of_row(row, middle, end);
+}
+
+/// Adds a part of a block where it has a linear map that serves, or else its quarters.
+void OkaRaster::add_parts(int column, int row, int level) {
+    const double part = std::ldexp(1.0, -level);
+    if (column * m_grid.side_u * part >= 1 || row * m_grid.side_v * part >= 1) return;
+    ++m_parts;
+    OkaBlock block;
+    const bool made = oka_block(*m_surface, m_camera, m_picture, m_blocks, column, row, block, level);
+    const simd::ParallelogramGrid grid = m_grid.at(level);
+    if (!is_steep(*m_surface, m_camera, grid, column, row)) {
+        if (made && level > 0) add(block.centre, block.by_u, block.by_v, column, row, level);
+        return;
+    }
+    if (is_out_of_view(*m_surface, m_camera, reach_of((column + 0.5) * grid.side_u, grid.half_u),
+                       reach_of((row + 0.5) * grid.side_v, grid.half_v)))
+        return;
+    if (level == kMostHalvings || m_parts >= kMostParts) {
+        if (!made || !add(block.centre, block.by_u, block.by_v, column, row, level)) ++m_left_out;
+        return;
+    }
+    for (const int down : {0, 1})
+        for (const int across : {0, 1}) add_parts(2 * column + across, 2 * row + down, level + 1);
 }
 
 /// From the farthest to the nearest.
@@ -416,7 +535,7 @@ void OkaRaster::draw(const Box& box, SeenPixels& seen, int times) const {
 
 OkaBlock OkaRaster::block_of(const simd::Parallelogram& p) const {
     OkaBlock block{};
-    oka_block(*m_surface, m_camera, m_picture, m_blocks, p.column, p.row, block);
+    oka_block(*m_surface, m_camera, m_picture, m_blocks, p.column, p.row, block, p.level);
     return block;
 }
 
@@ -443,27 +562,28 @@ Facets OkaRaster::facets() const {
     return made;
 }
 
-double OkaRaster::lost_by(const OkaBlock& block) const {
+double OkaRaster::lost_by(const OkaBlock& block, const simd::ParallelogramGrid& grid) const {
     const double by_u = glm::length(glm::dvec2(block.by_u)), by_v = glm::length(glm::dvec2(block.by_v));
     // What the inverse loses, relative to a point's distance from the centre, is the map's condition times a few units of
     // 2^-53; and a unit of u and of v.
     const double condition =
         (square(by_u) + square(by_v)) / std::fabs(block.by_u.x * block.by_v.y - block.by_v.x * block.by_u.y);
-    return (condition * (by_u * m_grid.half_u + by_v * m_grid.half_v) + by_u + by_v) * 0x1p-48;
+    return (condition * (by_u * grid.half_u + by_v * grid.half_v) + by_u + by_v) * 0x1p-48;
 }
 
 double OkaRaster::quick_bound_of(std::size_t index) const {
     const OkaBlock block = block_of(m_room->blocks[index]);
-    return surface::quick_bound_of(block, *m_surface, m_camera, m_grid.half_u, m_grid.half_v) +
-           lost_by(block);
+    const simd::ParallelogramGrid grid = m_grid.at(m_room->blocks[index].level);
+    return surface::quick_bound_of(block, *m_surface, m_camera, grid.half_u, grid.half_v) +
+           lost_by(block, grid);
 }
 
 double OkaRaster::bound_of(std::size_t index) const {
     const OkaBlock block = block_of(m_room->blocks[index]);
-    const double half_u = m_grid.half_u, half_v = m_grid.half_v;
-    return std::min(surface::quick_bound_of(block, *m_surface, m_camera, half_u, half_v),
-                    surface::bound_of(block, *m_surface, m_camera, half_u, half_v)) +
-           lost_by(block);
+    const simd::ParallelogramGrid grid = m_grid.at(m_room->blocks[index].level);
+    return std::min(surface::quick_bound_of(block, *m_surface, m_camera, grid.half_u, grid.half_v),
+                    surface::bound_of(block, *m_surface, m_camera, grid.half_u, grid.half_v)) +
+           lost_by(block, grid);
 }
 
 double OkaRaster::most_bound(const ParallelFor& parallel_for) const {

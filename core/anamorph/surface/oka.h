@@ -34,9 +34,14 @@ struct OkaBlock {
 
 /// Blocks across and down a picture. Throws Error where there are more than four million.
 Size oka_block_count(const Size& picture, const OkaBlocks& blocks);
-/// Block (i, j). False where one of its points is not in front of the camera.
+/// Block (i, j), or (i, j) of the blocks that are halved `level` times. False where its centre or that of a neighbour is not in
+/// front of the camera.
 bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
-               const OkaBlocks& blocks, int i, int j, OkaBlock& block);
+               const OkaBlocks& blocks, int i, int j, OkaBlock& block, int level = 0);
+/// May block (i, j) be seen where no linear map of it shows it: is one of its five points behind the camera, or less than half as
+/// far ahead as another one, while intervals cannot tell that all of it is out of view?
+bool oka_block_is_cut(const DrapedSurface& surface, const Camera& camera, const Size& picture,
+                      const OkaBlocks& blocks, int i, int j, int level = 0);
 
 /// The buffers of the blocks that a camera sees, reused for other views.
 struct OkaRoom {
@@ -51,13 +56,15 @@ struct OkaRoom {
     std::vector<std::size_t> first;
     std::vector<double> columns, rows;
     std::vector<glm::dvec3> seen;
+    std::vector<std::int32_t> behind;  ///< columns of a row's blocks of which a part may be behind the camera
 };
 
 /// The blocks that are on the screen as parallelograms: each block's linear map (2.8), whose matrix comes from central
 /// differences (2.4 to 2.7) over the block's side, on the block and half of the common area around it. They are drawn from
 /// the farthest to the nearest, those as far as each other in their order in the picture, or each with its depths.
-/// Neighbours need not meet. Blocks that are not in front of the camera as oka_block() says, and those whose parallelogram
-/// is a line but for rounding, are left out.
+/// Neighbours need not meet. Blocks of which a part is behind the camera (oka_block_is_cut) have no linear map, or one that is not
+/// on the screen: they are halved, as often as kMostHalvings, until their parts have one. left_out() counts parts that do not. Blocks
+/// whose parallelogram is a line but for rounding are left out.
 class OkaRaster {
   public:
     /// `square`: side of the squares that draw() finds blocks by. `pool`: room that other views may leave and use. Throws
@@ -73,6 +80,11 @@ class OkaRaster {
     void draw(const Box& box, SeenPixels& seen, int times = 1) const;
 
     std::size_t count() const { return m_room->blocks.size(); }
+    /// The number of parts of blocks that may be in view and are not drawn, as a part of them is behind the camera.
+    std::size_t left_out() const { return m_left_out; }
+    static constexpr int kMostHalvings = 10;
+    /// The most parts that are looked at.
+    static constexpr std::size_t kMostParts = std::size_t{1} << 20;
     /// The nearness of a block's centre.
     double nearness(std::size_t block) const { return -m_room->blocks[block].z; }
     /// The most pixels on the screen per unit of u; most_by_v() is the same per unit of v.
@@ -93,9 +105,13 @@ class OkaRaster {
 
   private:
     double quick_bound_of(std::size_t block) const;
-    double lost_by(const OkaBlock& block) const;
+    double lost_by(const OkaBlock& block, const simd::ParallelogramGrid& grid) const;
     void find_blocks();
     void find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below);
+    bool add(const glm::dvec3& centre, const glm::dvec3& by_u, const glm::dvec3& by_v, int column, int row,
+             int level);
+    void add_parts_of_row(int row, int first, int end);
+    void add_parts(int column, int row, int level);
     void sort_by_depth();
     OkaRoom::Squares squares_of(const Box& pixels) const;
     void list_squares();
@@ -108,6 +124,7 @@ class OkaRaster {
     simd::ParallelogramGrid m_grid;
     int m_square, m_columns;
     double m_most_by_u = 0, m_most_by_v = 0;
+    std::size_t m_left_out = 0, m_parts = 0;
     std::shared_ptr<RoomPool<OkaRoom>> m_pool;
     std::unique_ptr<OkaRoom> m_room;
 };

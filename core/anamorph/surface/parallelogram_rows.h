@@ -16,6 +16,7 @@ struct Parallelogram {
     double u_x, u_y, v_x, v_y;  ///< what u and v gain from pixel to pixel
     double z_u, z_v;            ///< what the depth gains by u and by v
     std::int32_t column, row;   ///< column and row of the block
+    std::int32_t level;         ///< of a part of a block, how often it was halved; else 0
     Box pixels;                 ///< pixels of the screen that it may cover
 };
 
@@ -23,6 +24,13 @@ struct Parallelogram {
 /// far as half_u and half_v from there, but not beyond 0 to 1.
 struct ParallelogramGrid {
     double side_u, side_v, half_u, half_v;
+
+    /// The grid of blocks that are halved `level` times, which reach over their edges as far as the whole ones.
+    ParallelogramGrid at(int level) const {
+        const double part = 1 / static_cast<double>(std::int64_t{1} << level);
+        return {side_u * part, side_v * part, half_u - (1 - part) * side_u / 2,
+                half_v - (1 - part) * side_v / 2};
+    }
 };
 
 /// The pixels of a box of a screen of width x height, whose side is 1 / `times` of those of the screen.

@@ -31,13 +31,14 @@ HWY_INLINE void Put(V values, M where, double* to) {
 // Products and sums are rounded one by one, so that sets with and without fused operations agree; and nothing depends on
 // where the box begins.
 template <bool kByDepth>
-HWY_INLINE void DrawOne(const Parallelogram& p, double id, const ParallelogramGrid& grid,
+HWY_INLINE void DrawOne(const Parallelogram& p, double id, const ParallelogramGrid& whole,
                         const ParallelogramView& view, const FacetPlanes& to) {
     const hn::CappedTag<double, 16> d;
     using V = hn::Vec<decltype(d)>;
     constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
     const Box box = PixelsOf(p, view);
     if (box.empty()) return;
+    const ParallelogramGrid grid = p.level == 0 ? whole : whole.at(p.level);
     const double u = (p.column + 0.5) * grid.side_u, v = (p.row + 0.5) * grid.side_v;
     const V low_u = hn::Set(d, HWY_MAX(-grid.half_u, -u)), high_u = hn::Set(d, HWY_MIN(grid.half_u, 1 - u)),
             low_v = hn::Set(d, HWY_MAX(-grid.half_v, -v)), high_v = hn::Set(d, HWY_MIN(grid.half_v, 1 - v));

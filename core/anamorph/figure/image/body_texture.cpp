@@ -7,10 +7,7 @@
 #include "anamorph/number/jet.h"
 
 namespace anamorph::figure {
-namespace {
-
-/// What stands beyond the texture's edges: what the mapping continues with.
-Border border_of(const Source& source, BodyMapping mapping) {
+Border texture_border(const Source& source, BodyMapping mapping) {
     const Size size = source.size(0);
     // Any texture goes from pole to pole, as a panorama of such a height and twice its width does.
     if (mapping == BodyMapping::latlong)
@@ -18,8 +15,6 @@ Border border_of(const Source& source, BodyMapping mapping) {
     return {Chart(Projection::rectilinear, size.width, size.height),
             mapping == BodyMapping::mirrored ? Wrap::mirror : Wrap::clamp};
 }
-
-}  // namespace
 
 glm::dvec4 color_of_texel(const std::vector<float>& texel) {
     const bool gray = texel.size() < 3;
@@ -34,7 +29,7 @@ BodyTexture::BodyTexture(const Source& source, BodyMapping mapping, Filter filte
       m_sums(average == TextureAverage::summed_area && averages(filter) ? source.summed_areas() : nullptr),
       m_mapping(mapping),
       m_filter(filter),
-      m_border(border_of(source, mapping)),
+      m_border(texture_border(source, mapping)),
       m_chooser(source),
       m_sampler(source, m_border),
       m_pixel(static_cast<std::size_t>(source.channels())),
@@ -67,10 +62,8 @@ bool BodyTexture::read_average(const Jacobian& jacobian, double u, double v) {
     if (!m_sums) return m_sampler.sample(m_chooser(jacobian), jacobian, 0, u, v, m_pixel.data());
     const Jacobian rectangle = covering_rectangle(jacobian);
     if (m_mapping == BodyMapping::latlong)
-        m_sums->mean_over_poles(u, v, rectangle.x_i, rectangle.y_j, m_pixel.data());
-    else
-        m_sums->mean(u, v, rectangle.x_i, rectangle.y_j, m_border.wrap(), m_pixel.data());
-    return true;
+        return m_sums->mean_over_poles(u, v, rectangle.x_i, rectangle.y_j, m_pixel.data());
+    return m_sums->mean(u, v, rectangle.x_i, rectangle.y_j, m_border.wrap(), m_pixel.data());
 }
 
 bool BodyTexture::read_trilinear(const Jacobian& jacobian, double u, double v) {

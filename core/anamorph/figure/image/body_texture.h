@@ -34,6 +34,9 @@ Color laid_over(const Color& color, double alpha, const Color& below) {
 /// Red, green, blue and alpha of a texel of 1 to 4 channels, the last of 2 and of 4 alpha.
 glm::dvec4 color_of_texel(const std::vector<float>& texel);
 
+/// What stands beyond a texture's edges: what the mapping continues with.
+Border texture_border(const Source& source, BodyMapping mapping);
+
 /// Reads the texture around a body. Each thread needs its own. Keeps a reference to the source.
 class BodyTexture {
   public:

@@ -9,7 +9,9 @@
 
 #include "anamorph/figure/image/backdrop.h"
 #include "anamorph/figure/image/body_texture.h"
+#include "anamorph/figure/image/bump_map.h"
 #include "anamorph/figure/image/perturbation.h"
+#include "anamorph/figure/image/solid_texture.h"
 #include "anamorph/figure/image/visible_surfaces.h"
 #include "anamorph/figure/outline/stroke_pixels.h"
 #include "anamorph/image/canvas.h"
@@ -40,6 +42,16 @@ double half_longest(const Ellipsoid& shape, const View& view) {
     return view.scale * view.eye_distance / std::max(view.to_view(shape.center).z, view.near) * axis;
 }
 
+/// The gradient in space, as the observer has it, of heights of `scale` for 1, by their gradient over the unit sphere: that of the
+/// inverse of the map to the ellipsoid, transposed.
+glm::dmat3 slopes_of(const Ellipsoid& shape, const View& view, double scale) {
+    // Axes that are shorter count as that (SeenSurface).
+    const double least = 1e-9 * std::max({shape.axes.x, shape.axes.y, shape.axes.z});
+    glm::dmat3 slopes = view.rotation * shape.rotation;
+    for (int k = 0; k < 3; ++k) slopes[k] *= scale / std::max(shape.axes[k], least);
+    return slopes;
+}
+
 bool is_lines(FigureStyle style) {
     return style == FigureStyle::outline || style == FigureStyle::stick;
 }
@@ -48,12 +60,12 @@ bool is_shaded(FigureStyle style) {
     return style == FigureStyle::shaded || style == FigureStyle::textured;
 }
 
-/// Lines are drawn, the strokes of `look`.
-StrokePixels strokes_of(const FigureFrame& frame, const View& view, const Size& size, const FigureLook& look,
-                        const ParallelFor& parallel_for) {
+/// Lines as `look` has them.
+Drawing drawing_of(const FigureFrame& frame, const View& view, const Size& size, const FigureLook& look,
+                   const ParallelFor& parallel_for) {
     DrawingOptions lines = look.lines;
     if (look.style == FigureStyle::stick) lines.sticks = frame.joints.empty() ? Sticks::axes : Sticks::joints;
-    return StrokePixels(draw(frame, view, {size.width, size.height}, lines, parallel_for));
+    return draw(frame, view, {size.width, size.height}, lines, parallel_for);
 }
 
 /// The sources of a picture as one thread reads them: made when the first pixel needs them.
@@ -78,12 +90,20 @@ class Textures {
         if (!m_backdrop) m_backdrop = std::make_unique<FigureBackdrop>(*m_sources[i], size);
         return m_backdrop.get();
     }
+    /// The heights on bodies; null where there are none.
+    BumpMap* bumps() {
+        const std::size_t i = m_look.textures.size() + (m_look.backdrop ? 1 : 0);
+        if (!m_look.bumps || i >= m_sources.size() || !m_sources[i]) return nullptr;
+        if (!m_bumps) m_bumps = std::make_unique<BumpMap>(*m_sources[i], m_look.mapping);
+        return m_bumps.get();
+    }
 
   private:
     const std::vector<const Source*>& m_sources;
     const FigureLook& m_look;
     std::vector<std::unique_ptr<BodyTexture>> m_open;
     std::unique_ptr<FigureBackdrop> m_backdrop;
+    std::unique_ptr<BumpMap> m_bumps;
 };
 
 }  // namespace
@@ -105,11 +125,17 @@ struct FigurePicture::Impl {
     View view;
     Size size;
     FigureLook look;
-    std::vector<glm::dvec3> colors = {};  ///< of the bodies, 0 to 1
-    std::vector<int> textures = {};       ///< of the bodies: positions in FigureLook::textures, -1 for none
-    std::vector<double> longest = {};     ///< of the bodies: half the longest axis in pixels
+    std::vector<glm::dvec3> colors = {};    ///< of the bodies, 0 to 1
+    std::vector<int> textures = {};         ///< of the bodies: positions in FigureLook::textures, -1 for none
+    std::vector<double> longest = {};       ///< of the bodies: half the longest axis in pixels
+    std::vector<SolidTexture> solids = {};  ///< of the bodies, where they are colored by formulas
+    std::vector<glm::dmat3> slopes =
+        {};  ///< of the bodies, where normals are turned: heights' gradients by the unit sphere, as
+             ///< the observer has them
     std::unique_ptr<const VisibleSurfaces> surfaces = {};
     std::unique_ptr<const StrokePixels> strokes = {};
+    double simple_error = 0;
+    std::vector<int> left_out = {};
 
     /// Towards the eye, from what is seen at (x, y).
     glm::dvec3 toward_eye(double x, double y) const {
@@ -126,11 +152,15 @@ struct FigurePicture::Impl {
                random_of_pixel(look.seed, frame.number, x - look.overscan.width, y - look.overscan.height);
     }
 
-    glm::dvec3 color(int body, double x, double y, bool far_side, double perturbed, Textures& open) const {
+    /// `side`: of the square of pixels that shows the body.
+    glm::dvec3 color(int body, double x, double y, bool far_side, double side, double perturbed,
+                     Textures& open) const {
         const auto i = static_cast<std::size_t>(body);
         const SeenSurface& surface = surfaces->surface(body);
-        const glm::dvec3 outwards = glm::normalize(surface.gradient(x, y, far_side));
-        glm::dvec3 own = colors[i];
+        glm::dvec3 outwards = glm::normalize(surface.gradient(x, y, far_side));
+        if (BumpMap* bumps = slopes.empty() ? nullptr : open.bumps())
+            outwards = bumped(outwards, slopes[i] * bumps->gradient(surface, x, y, far_side));
+        glm::dvec3 own = solids.empty() ? colors[i] : solids[i].color(surface, x, y, far_side, side);
         if (BodyTexture* texture = open.get(textures[i]))
             own = texture->color({surface, frame.bodies[i].texture_offset, longest[i]}, x, y, far_side, own);
         // Only highlights are seen from somewhere.
@@ -195,8 +225,8 @@ struct FigurePicture::Impl {
             }
             default:
                 if (none) return on_background(glm::dvec3(0.0), 0, x, y, open, store);
-                on_background(color(seen.body, px, py, seen.hit.far_side, perturbation(x, y), open), 1, x, y,
-                              open, store);
+                on_background(color(seen.body, px, py, seen.hit.far_side, 1, perturbation(x, y), open), 1, x,
+                              y, open, store);
         }
     }
 
@@ -207,7 +237,7 @@ struct FigurePicture::Impl {
         const double perturbed = perturbation(x, y);
         for (const VisiblePart& part : parts) {
             const double share = static_cast<double>(part.samples) / VisibleSurfaces::kSamples;
-            sum += share * color(part.body, part.x, part.y, part.far_side, perturbed, open);
+            sum += share * color(part.body, part.x, part.y, part.far_side, std::sqrt(share), perturbed, open);
             alpha += share;
         }
         on_background(sum, alpha, x, y, open, store);
@@ -251,13 +281,30 @@ FigurePicture::FigurePicture(FigureFrame frame, const View& view, const Size& si
         const auto found = std::find(look.textures.begin(), look.textures.end(), body.texture);
         const bool textured = look.style == FigureStyle::textured && found != look.textures.end();
         impl->textures.push_back(textured ? static_cast<int>(found - look.textures.begin()) : -1);
+        if (look.solid && is_shaded(look.style)) impl->solids.emplace_back(*look.solid, body, own.number);
+        if (look.bumps && is_shaded(look.style))
+            impl->slopes.push_back(slopes_of(body.shape, view, look.bump_scale));
     }
-    if (is_lines(look.style))
-        impl->strokes = std::make_unique<const StrokePixels>(strokes_of(own, view, size, look, parallel_for));
-    else
+    if (is_lines(look.style)) {
+        Drawing lines = drawing_of(own, view, size, look, parallel_for);
+        impl->simple_error = lines.simple_error;
+        impl->left_out = lines.left_out;
+        impl->strokes = std::make_unique<const StrokePixels>(std::move(lines));
+    } else
         impl->surfaces = std::make_unique<const VisibleSurfaces>(shapes_of(own), view, size.height,
                                                                  names_of(own), parallel_for);
     m_impl = std::move(impl);
+}
+
+double FigurePicture::simple_error() const {
+    return m_impl->simple_error;
+}
+
+std::vector<std::string> FigurePicture::left_out() const {
+    std::vector<std::string> names;
+    for (const int i : m_impl->left_out)
+        names.push_back(m_impl->frame.bodies[static_cast<std::size_t>(i)].name);
+    return names;
 }
 
 FigurePicture::~FigurePicture() = default;

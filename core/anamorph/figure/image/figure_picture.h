@@ -15,6 +15,7 @@
 #include "anamorph/figure/body/body_mapping.h"
 #include "anamorph/figure/body/frame.h"
 #include "anamorph/figure/image/shading.h"
+#include "anamorph/figure/image/solid_look.h"
 #include "anamorph/figure/outline/drawing.h"
 #include "anamorph/figure/outline/outline_view.h"
 #include "anamorph/geometry/box.h"
@@ -57,7 +58,11 @@ struct FigureLook {
     Filter filter = Filter::antialias;                   ///< how textures are sampled
     TextureAverage average = TextureAverage::footprint;  ///< how Filter::antialias averages textures
     std::vector<std::string> textures;                   ///< the names of the textures that are given
-    DrawingOptions lines;                                ///< how the styles outline and stick are drawn
+    std::optional<SolidLook> solid;                      ///< colors by formulas, below textures
+    bool bumps =
+        false;  ///< a picture of heights turns normals (bump_map.h); its source comes after the backdrop's
+    double bump_scale = 10;  ///< how high brightness 1 is, in units of the scene
+    DrawingOptions lines;    ///< how the styles outline and stick are drawn
 };
 
 /// The number of channels of a picture: four for red, green, blue and alpha (colour multiplied by alpha), two for
@@ -74,10 +79,15 @@ class FigurePicture {
     FigurePicture(FigurePicture&&) noexcept;
 
     /// Fills `pixels`, which has channels_of(style) channels, with the pixels of `box`; pixels beyond the picture are 0.
-    /// `textures`: in the order of their names, then the backdrop, null where one is missing. Bodies whose texture is not there,
+    /// `textures`: in the order of their names, then the backdrop and the heights, null where one is missing. Bodies whose texture is not there,
     /// or cannot be read, have their own colour. A texture's fourth channel (the second of two) is alpha.
     void draw(const Box& box, const ImageView& pixels, const ParallelFor& parallel_for = serial_for,
               const std::vector<const Source*>& textures = {}) const;
+
+    /// How far the lines of the style outline may be from bodies' outlines, but for chords: pixels (Drawing::simple_error).
+    double simple_error() const;
+    /// The names of bodies that the lines do not show (Drawing::left_out).
+    std::vector<std::string> left_out() const;
 
   private:
     struct Impl;

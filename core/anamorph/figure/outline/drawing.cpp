@@ -10,6 +10,7 @@
 #include "anamorph/figure/body/skeleton.h"
 #include "anamorph/figure/outline/level_of_detail.h"
 #include "anamorph/figure/outline/outline.h"
+#include "anamorph/figure/outline/simple_outlines.h"
 
 namespace anamorph::figure {
 namespace {
@@ -117,6 +118,7 @@ class Page {
         options.window = {m_box.low, m_box.high};
         const Outlines found = outlines(m_frame, m_view, options, parallel_for);
         const std::vector<Outline>& all = found.bodies;
+        if (m_options.style != OutlineStyle::limbs) return draw_simple(all, parallel_for);
         std::vector<Detail> details(all.size(), Detail::body);
         if (m_options.lod > 0) details = levels_of_detail(m_shapes, m_view, {m_options.lod});
         std::vector<int> lines;
@@ -132,6 +134,18 @@ class Page {
         const auto drawn = [&](int i) { return details[static_cast<std::size_t>(i)] > Detail::line; };
         for (const CrossingCurve& curve : found.crossings)
             if (drawn(curve.first) && drawn(curve.second)) draw_crossing(curve);
+    }
+
+    /// Shows bodies by cylinders, which hide nothing.
+    void draw_cylinders() {
+        for (const CylinderLine& line :
+             cylinder_lines(m_frame, m_view, kShareOfTol * m_options.tol, m_drawing.left_out)) {
+            const auto i = static_cast<std::size_t>(line.body);
+            std::vector<glm::dvec2> points;
+            for (const glm::dvec2& p : line.points) points.push_back(on_page(p));
+            add(StrokeKind::visible, i, points, m_view.to_view(m_shapes[i].center).z);
+        }
+        for (const Ellipsoid& body : m_shapes) count_error(cylinder_error(body, m_view));
     }
 
     void draw_sticks() {
@@ -179,6 +193,73 @@ class Page {
             stroke.points = clip_polygon(stroke.points, *m_options.viewport, kShareOfTol * m_options.tol);
         stroke.depth = outline.viewed.center.z;
         if (has_extent(stroke.points)) m_drawing.strokes.push_back(std::move(stroke));
+    }
+
+    /// What is infinite is left out or drawn whole.
+    void count_error(double error) {
+        if (error < HUGE_VAL) m_drawing.simple_error = std::max(m_drawing.simple_error, error);
+    }
+
+    /// Draws bodies by the level of their figure, or by one for all.
+    void draw_simple(const std::vector<Outline>& all, const ParallelFor& parallel_for) {
+        std::vector<FigureLevel> levels(
+            std::max<std::size_t>(m_frame.figures.size(), 1),
+            m_options.style == OutlineStyle::boxes ? FigureLevel::boxes : FigureLevel::contours);
+        if (m_options.style == OutlineStyle::levels)
+            levels = figure_levels(m_frame, m_view, m_options.simple_tol);
+        std::vector<int> first(levels.size(), -1);
+        std::vector<bool> has_dot(levels.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const auto figure =
+                std::min(static_cast<std::size_t>(m_frame.bodies[i].figure), levels.size() - 1);
+            const Ellipsoid& body = m_shapes[i];
+            const int contours = contours_for(body, m_view, m_options.simple_tol);
+            const FigureLevel level = levels[figure];
+            // A body that is a point is there nevertheless.
+            if (level != FigureLevel::dot && dot_error(body, m_view) <= kLeastExtent) {
+                draw_dot(i, all[i]);
+                continue;
+            }
+            if (level == FigureLevel::dot) {
+                // Where the figure's first body is, if anything of the figure is seen.
+                if (first[figure] < 0) first[figure] = static_cast<int>(i);
+                if (has_dot[figure] || all[i].visible.empty()) continue;
+                has_dot[figure] = true;
+                const auto f = static_cast<std::size_t>(first[figure]);
+                add_dot(f, on_page(m_view.project(m_shapes[f].center)), m_view.to_view(m_shapes[f].center).z);
+                count_error(m_options.simple_tol);
+            } else if (level == FigureLevel::sticks) {
+                draw_shape(i, {axis_line(body)}, {static_cast<int>(i)}, parallel_for);
+                count_error(stick_error(body, m_view));
+            } else if (level == FigureLevel::boxes && box_error(body, m_view) < HUGE_VAL) {
+                draw_shape(i, box_lines(body, m_view), {static_cast<int>(i)}, parallel_for);
+                count_error(box_error(body, m_view));
+            } else if (level == FigureLevel::contours && contours > 0) {
+                const double tol = kShareOfTol * m_options.tol;
+                draw_shape(i, contour_lines(body, m_view, contours, tol), {}, parallel_for);
+                count_error(contour_error(body, m_view, contours));
+            } else {
+                draw_outline(i, all[i]);
+            }
+        }
+    }
+
+    /// Draws the lines of a shape that stands for body i: what is turned away is hidden, and so is what bodies but `ignored` hide.
+    void draw_shape(std::size_t i, const std::vector<ShapeLine>& shape, const std::vector<int>& ignored,
+                    const ParallelFor& parallel_for) {
+        std::vector<SeenLine> lines;
+        for (const ShapeLine& line : shape) lines.push_back({line.from, line.to, {}, {}});
+        const bool hide = m_options.hidden != HiddenLines::draw;
+        hide_lines(lines, hide ? std::span<const Ellipsoid>(m_shapes) : std::span<const Ellipsoid>(), m_view,
+                   std::vector<std::vector<int>>(lines.size(), ignored), parallel_for);
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+            const bool seen = !hide || !shape[k].turned_away;
+            for (const Arc& part : lines[k].visible)
+                if (seen || m_options.hidden == HiddenLines::dash)
+                    add_line(seen ? StrokeKind::visible : StrokeKind::hidden, i, lines[k], part);
+            if (m_options.hidden == HiddenLines::dash)
+                for (const Arc& part : lines[k].hidden) add_line(StrokeKind::hidden, i, lines[k], part);
+        }
     }
 
     void draw_outline(std::size_t i, const Outline& outline) {
@@ -314,7 +395,9 @@ class Page {
 Drawing draw(const FigureFrame& frame, const View& view, const glm::dvec2& size,
              const DrawingOptions& options, const ParallelFor& parallel_for) {
     Page page(frame, view, size, options);
-    if (options.sticks == Sticks::none)
+    if (options.sticks == Sticks::none && options.style == OutlineStyle::cylinders)
+        page.draw_cylinders();
+    else if (options.sticks == Sticks::none)
         page.draw_outlines(parallel_for);
     else
         page.draw_sticks();

@@ -10,6 +10,7 @@
 
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/body/frame.h"
+#include "anamorph/figure/outline/outline_style.h"
 #include "anamorph/figure/outline/outline_view.h"
 #include "anamorph/figure/outline/viewport.h"
 #include "anamorph/parallel_for.h"
@@ -31,13 +32,19 @@ inline constexpr NumberRow kLineWidthRow{"line-width", 1, 0.01, 1000};
 /// The width of the gap on either side of a nearer line, in pixels.
 inline constexpr NumberRow kHaloRow{"halo", 0, 0, 1000};
 
+/// How far Fetter's levels, and contours, may be from bodies' outlines, in pixels.
+inline constexpr NumberRow kSimpleTolRow{"simple-tol", 1, 0.001};
+
 /// How a frame is drawn.
 struct DrawingOptions {
     HiddenLines hidden = HiddenLines::remove;
     Sticks sticks = Sticks::none;
-    bool crossings = false;                      ///< also the curves in which bodies pass through each other
-    double lod = kLevelOfDetailRow.standard;     ///< bodies no wider are dots and lines; pixels
-    double tol = kDrawingTolRow.standard;        ///< maximum chord error; pixels
+    OutlineStyle style = OutlineStyle::limbs;  ///< fewer lines than outlines, with an error that is stated
+    double simple_tol =
+        kSimpleTolRow.standard;               ///< of levels and contours: how far they may be off, in pixels
+    bool crossings = false;                   ///< also the curves in which bodies pass through each other
+    double lod = kLevelOfDetailRow.standard;  ///< bodies no wider are dots and lines; pixels
+    double tol = kDrawingTolRow.standard;     ///< maximum chord error; pixels
     double line_width = kLineWidthRow.standard;  ///< pixels
     double halo = kHaloRow.standard;             ///< the gap on either side of a nearer line, in pixels
     bool colors = false;                         ///< lines have the colors of the bodies; else black
@@ -66,6 +73,10 @@ struct Drawing {
     int frame = 0;
     glm::dvec2 size{0.0};  ///< size of the page, in pixels
     double line_width = 1, halo = 0;
+    /// How far outlines of what stands for bodies may be from the bodies' own, at most: pixels; 0 where they are these.
+    double simple_error = 0;
+    std::vector<int>
+        left_out;  ///< bodies that Willmert's cylinders do not show, as they reach before View::near
     std::vector<Stroke> strokes;  ///< fills, then hidden strokes, then the others; each from far to near
 };
 
