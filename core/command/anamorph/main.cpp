@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// anamorph: what operations there are, and their keys.
+// anamorph: what operations there are, and their keys; with OpenImageIO, pictures' hashes, and pictures drawn.
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <functional>
 #include <iostream>
 
 #include "anamorph/version.h"
 #include "reference.h"
+#ifdef ANAMORPH_HAVE_PICTURES
+#include "picture_commands.h"
+#endif
 
 namespace anamorph::command {
 namespace {
@@ -27,16 +31,22 @@ int run(int argc, char** argv) {
     CLI::App* help = app.add_subcommand("help", "List the operations, or the keys of one");
     std::string operation;
     help->add_option("OPERATION", operation, "Its name; without, all are listed");
+    std::function<void()> run = [&] { print_help(operation); };
+#ifdef ANAMORPH_HAVE_PICTURES
+    add_picture_commands(app, run);
+#endif
+    std::string what = "the page";
     try {
         app.parse(argc, argv);
-        print_help(operation);
+        if (!help->parsed()) what = "the picture";
+        run();
         if (std::cout.flush()) return 0;
         throw Error("the standard output cannot be written");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
-        std::cerr << "anamorph: " << message_of(e, "the page") << "\n";
+        std::cerr << "anamorph: " << message_of(e, what) << "\n";
     } catch (const std::exception& e) {
-        std::cerr << "anamorph: " << message_of(e, "the page") << "\n";
+        std::cerr << "anamorph: " << message_of(e, what) << "\n";
     }
     return 1;
 }
