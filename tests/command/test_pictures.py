@@ -172,6 +172,12 @@ class Pictures(unittest.TestCase):
             manifest.write_text(broken)
             self.refused("p2", "join", "p1", "p2", "p3")
 
+    def test_says_where_a_program_is_missing(self):
+        alone = shutil.copy(PROGRAM, self.folder)
+        result = subprocess.run([alone, "hash", "sky.pano"], capture_output=True, text=True, timeout=50)
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertRegex(result.stderr, r"^anamorph: .*/anamorph-pictures: No such file .*OpenImageIO alone\)\n$")
+
     def test_parallel_as_the_page_shows_it(self):
         if not shutil.which("parallel"):
             self.skipTest("GNU parallel is not there")

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture_commands.h"
-
+// anamorph-pictures, which anamorph runs: hash, draw and join.
 #include <OpenImageIO/imageio.h>
 
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "anamorph/operation/operation.h"
+#include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
 #include "part_file.h"
 #include "picture_reader.h"
@@ -32,8 +35,7 @@ void declare_recipes() {
                                  nullptr, version());
 }
 
-}  // namespace
-
+/// Adds the subcommands; `run` is then what is to be done.
 void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     struct Given {
         std::string recipe, output, part;
@@ -81,4 +83,29 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     });
 }
 
+int run(int argc, char** argv) {
+    CLI::App app{"Pictures of recipes", "anamorph"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "anamorph " + std::string(version()));
+    std::function<void()> run;
+    add_picture_commands(app, run);
+    try {
+        app.parse(argc, argv);
+        run();
+        if (std::cout.flush()) return 0;
+        throw Error("the standard output cannot be written");
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
+        std::cerr << "anamorph: " << message_of(e, "the picture") << "\n";
+    } catch (const std::exception& e) {
+        std::cerr << "anamorph: " << message_of(e, "the picture") << "\n";
+    }
+    return 1;
+}
+
+}  // namespace
 }  // namespace anamorph::command
+
+int main(int argc, char** argv) {
+    return anamorph::command::run(argc, argv);
+}
