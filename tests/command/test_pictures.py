@@ -77,6 +77,18 @@ class Pictures(unittest.TestCase):
         head = "anamorph hash 1\npicture 0 0 256 128 0 0 256 128\nchannel R uint8\nchannel G uint8\nchannel B uint8\n"
         self.assertEqual(self.hash("noise.ppm")[0], xxh128(head.encode() + bytes.fromhex(xxh128(pixels))))
 
+    def test_a_recipe_says_its_hash(self):
+        if not shutil.which("oiiotool"):
+            self.skipTest("oiiotool is not there")
+        environment = dict(os.environ, OIIO_LIBRARY_PATH=os.environ["ANAMORPH_PLUGINS"], OPENIMAGEIO_PLUGIN_PATH=os.environ["ANAMORPH_PLUGINS"])
+        for name, says in (("sky.pano?hash=1", True), ("sky.pano?hash=1&tile=0&mip=1", True), ("sky.pano", False),
+                           ("noise.ppm.map?hash=1", True)):
+            out = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, env=environment, capture_output=True, text=True,
+                                 timeout=100)
+            self.assertEqual(out.returncode, 0, out.stdout + out.stderr)
+            said = re.findall('anamorph:hash: "([0-9a-f]*)"', out.stdout)
+            self.assertEqual(said, self.hash(name) if says else [])
+
     def test_parts_make_the_whole(self):
         whole = self.hash("sky.pano")[0]
         for count in (1, 3, 13):  # of 12 tiles
