@@ -48,7 +48,7 @@ void check_readable(const ImageBuf& src) {
 }
 
 /// Keys that only a file has a use for.
-const char* const kKeysOfRecipes[] = {"subimage", "concatenate", "tile", "mip", "frames"};
+const char* const kKeysOfRecipes[] = {"subimage", "concatenate", "tile", "mip", "hash", "frames"};
 
 /// Options of the call, and the size of an initialised dst where no other is
 /// asked for.

@@ -17,6 +17,7 @@
 #include "anamorph/operation/solved.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
+#include "anamorph/picture_tiles.h"
 #include "anamorph/side_files.h"
 #include "anamorph/source_stack.h"
 #include "recipe.h"
@@ -202,6 +203,7 @@ class RecipeContent final : public Content {
         m_pictures = recipe.operation->read({values, known, recipe.files, reader, missing});
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
+        m_says_hash = values.knows("hash") && values.toggle("hash");
         if (values.knows("mip") && values.toggle("mip"))
             while (m_pictures->picture(0, m_levels)) ++m_levels;
         const bool has_tiles = !known.empty() && (images[0].content ? !images[0].content->prefers_scanlines()
@@ -241,6 +243,7 @@ class RecipeContent final : public Content {
             // pixels have to be drawn for that.
             if (l.solved && !l.solved->picture().reached_by_drawing())
                 add_attributes(l.spec, l.solved->reached());
+            if (m_says_hash && level == 0) l.spec.attribute("anamorph:hash", hash_of(subimage));
         });
         return l.spec;
     }
@@ -283,6 +286,14 @@ class RecipeContent final : public Content {
         std::once_flag once;
         ImageSpec spec;  ///< the header with what was reached
     };
+
+    /// The digits of the hash of a picture, drawn for it.
+    std::string hash_of(int subimage) const {
+        FileHasher hasher;
+        hasher.add_picture(level(subimage, 0).header,
+                           [&](const Box& box, std::byte* pixels) { read(subimage, 0, box, pixels); });
+        return hash_digits(hasher.hash());
+    }
 
     /// Draws channels of several types: in float, and then each in its own.
     void read_types(const Level& level, Solved& solved, const Box& box, std::byte* pixels,
@@ -511,7 +522,7 @@ class RecipeContent final : public Content {
     std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
-    bool m_prefers_scanlines = false;
+    bool m_prefers_scanlines = false, m_says_hash = false;
     int m_levels = 1;
     bool m_stored = false;                                ///< as moves_stored() says
     bool m_moves_channels = false;                        ///< as moves_channels_stored() says

@@ -141,7 +141,7 @@ void blend(const float* const* shapes, const double* weights, std::size_t shape_
 void blend(const double* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
            double* out);
 /// out[i] = base[i] + sum_k weights[k] masks[k][i] (shapes[k][i] - base[i]), with 1 for a mask that is null.
-/// Errs as blend() does, with shape_count + 3.
+/// Errs as blend() does, with shape_count + 4.
 void blend_masked(const float* const* shapes, const float* const* masks, const double* weights,
                   std::size_t shape_count, const float* base, std::size_t count, float* out);
 void blend_masked(const double* const* shapes, const float* const* masks, const double* weights,

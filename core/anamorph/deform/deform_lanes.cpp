@@ -249,7 +249,7 @@ void WritePoints(const std::int64_t* sums, int count, double resolution, bool st
         if (offset) LoadPoints(offset + 3 * i, more);
         for (int c = 0; c < 3; ++c) {
             const V sum = hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i));
-            p[c] = hn::Add(hn::MulAdd(sum, unit, more[c]), p[c]);
+            p[c] = hn::Add(hn::Add(hn::Mul(sum, unit), more[c]), p[c]);
         }
         StorePoints(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), stream, out + 3 * i);
     }
@@ -552,10 +552,10 @@ void Blend(const T* const* shapes, const double* weights, std::size_t shape_coun
         V a = hn::Zero(d), b = a, c = a, e = a;
         for (std::size_t k = 0; k < shape_count; ++k) {
             const V w = hn::Set(d, weights[k]);
-            a = hn::MulAdd(w, At(shapes[k], i), a);
-            b = hn::MulAdd(w, At(shapes[k], i + kLane), b);
-            c = hn::MulAdd(w, At(shapes[k], i + 2 * kLane), c);
-            e = hn::MulAdd(w, At(shapes[k], i + 3 * kLane), e);
+            a = hn::Add(hn::Mul(w, At(shapes[k], i)), a);
+            b = hn::Add(hn::Mul(w, At(shapes[k], i + kLane)), b);
+            c = hn::Add(hn::Mul(w, At(shapes[k], i + 2 * kLane)), c);
+            e = hn::Add(hn::Mul(w, At(shapes[k], i + 3 * kLane)), e);
         }
         hn::StoreU(StoreAs(out, a), dt, out + i);
         hn::StoreU(StoreAs(out, b), dt, out + i + kLane);
@@ -566,7 +566,8 @@ void Blend(const T* const* shapes, const double* weights, std::size_t shape_coun
     for (; i < count; ++i) {
         auto sum = hn::Zero(one);
         for (std::size_t k = 0; k < shape_count; ++k)
-            sum = hn::MulAdd(hn::Set(one, weights[k]), hn::Set(one, static_cast<double>(shapes[k][i])), sum);
+            sum = hn::Add(hn::Mul(hn::Set(one, weights[k]), hn::Set(one, static_cast<double>(shapes[k][i]))),
+                          sum);
         out[i] = static_cast<T>(hn::GetLane(sum));
     }
 }
@@ -588,7 +589,7 @@ void BlendMasked(const T* const* shapes, const float* const* masks, const double
         for (std::size_t k = 0; k < shape_count; ++k) {
             auto w = hn::Set(d, weights[k]);
             if (masks[k]) w = hn::Mul(w, load(d, masks[k], i));
-            sum = hn::MulAdd(w, hn::Sub(load(d, shapes[k], i), start), sum);
+            sum = hn::Add(hn::Mul(w, hn::Sub(load(d, shapes[k], i), start)), sum);
         }
         return sum;
     };

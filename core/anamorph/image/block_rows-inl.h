@@ -7,6 +7,7 @@
 
 #include "anamorph/image/packed_blocks.h"
 #include "anamorph/image/prefetch.h"
+#include "anamorph/number/fused-inl.h"
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
 
@@ -68,8 +69,7 @@ struct RowPoints {
         HWY_ALIGN float c[8];
         for (int lane = 0; lane < 8; lane += static_cast<int>(hn::MaxLanes(d8))) {
             auto sum = hn::LoadU(d8, block.c[block.degree] + lane);
-            for (int j = block.degree - 1; j >= 0; --j)
-                sum = hn::MulAdd(sum, t, hn::LoadU(d8, block.c[j] + lane));
+            for (int j = block.degree - 1; j >= 0; --j) sum = Fused(sum, t, hn::LoadU(d8, block.c[j] + lane));
             hn::Store(sum, d8, c + lane);
         }
         x0 = hn::Set(d, c[0]);
@@ -104,7 +104,7 @@ struct RowPoints {
         if (cubic) {
             for (int i = 0; i < count; i += n, half_steps = hn::Add(half_steps, on)) {
                 const auto s = hn::Mul(half_steps, step);
-                body(i, Value(s, x0, x1, hn::MulAdd(s, x3, x2)), Value(s, y0, y1, hn::MulAdd(s, y3, y2)));
+                body(i, Value(s, x0, x1, Fused(s, x3, x2)), Value(s, y0, y1, Fused(s, y3, y2)));
             }
         } else {
             for (int i = 0; i < count; i += n, half_steps = hn::Add(half_steps, on)) {
@@ -117,7 +117,7 @@ struct RowPoints {
   private:
     static HWY_INLINE hn::Vec<Floats> Value(hn::Vec<Floats> s, hn::Vec<Floats> c0, hn::Vec<Floats> c1,
                                             hn::Vec<Floats> c2) {
-        return hn::MulAdd(s, hn::MulAdd(s, c2, c1), c0);
+        return Fused(s, Fused(s, c2, c1), c0);
     }
 };
 

@@ -85,21 +85,21 @@ HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int ch
         // Both texels of a row at once.
         const Pair d2;
         const auto above = LoadFloats(d2, p), below = LoadFloats(d2, p + row);
-        const auto both = hn::MulAdd(hn::Set(d2, fy), hn::Sub(below, above), above);
+        const auto both = Fused(hn::Set(d2, fy), hn::Sub(below, above), above);
         const auto first = hn::LowerHalf(d, both);
         auto second = hn::UpperHalf(d, both);
         if constexpr (kChannels == 3) {
             HWY_ALIGN static constexpr int32_t kShift[8] = {3, 4, 5, 6, 7, 7, 7, 7};
             second = hn::LowerHalf(d, hn::TableLookupLanes(both, hn::SetTableIndices(d2, kShift)));
         }
-        return hn::MulAdd(vx, hn::Sub(second, first), first);
+        return Fused(vx, hn::Sub(second, first), first);
     }
 #endif
     const auto a = LoadQuad(p), b = LoadQuad(p + row);
-    const auto left = hn::MulAdd(vy, hn::Sub(b, a), a);
+    const auto left = Fused(vy, hn::Sub(b, a), a);
     const auto e = LoadQuad(p + next), f = LoadQuad(p + row + next);
-    const auto right = hn::MulAdd(vy, hn::Sub(f, e), e);
-    return hn::MulAdd(vx, hn::Sub(right, left), left);
+    const auto right = Fused(vy, hn::Sub(f, e), e);
+    return Fused(vx, hn::Sub(right, left), left);
 }
 
 /// One bilinear tap a pixel. kChannels 0: any number, four at a time; a store's surplus lanes are overwritten
@@ -189,7 +189,7 @@ HWY_INLINE hn::Vec<Quad> NineTexels(const T* HWY_RESTRICT p, ptrdiff_t row, int 
     const auto middle = LoadQuad(p);
     auto sum = middle;
     const auto add = [&](int k, const T* from) HWY_ATTR {
-        sum = hn::MulAdd(hn::Set(d, w.at[k][i]), hn::Sub(LoadQuad(from), middle), sum);
+        sum = Fused(hn::Set(d, w.at[k][i]), hn::Sub(LoadQuad(from), middle), sum);
     };
     add(0, p - row - next);
     add(1, p - row);
@@ -222,7 +222,7 @@ HWY_INLINE hn::Vec<Pair> NineOfTwo(const T* HWY_RESTRICT origin, ptrdiff_t row, 
     auto sum = middle;
     const auto add = [&](int n, ptrdiff_t to) HWY_ATTR {
         const auto weight = hn::Broadcast<k>(hn::Load(d, w.at[n] + i));
-        sum = hn::MulAdd(weight, hn::Sub(LoadTwo(p + to, q + to), middle), sum);
+        sum = Fused(weight, hn::Sub(LoadTwo(p + to, q + to), middle), sum);
     };
     add(0, -row - kChannels);
     add(1, -row);
@@ -359,13 +359,13 @@ HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RES
                 auto line = hn::Zero(d);
                 for (int k = 0; k < 4; ++k) {
                     const auto value = LoadQuad(texel + j * row + k * s.channels);
-                    line = hn::MulAdd(hn::Set(d, wx[k]), value, line);
+                    line = Fused(hn::Set(d, wx[k]), value, line);
                     if constexpr (kClamps) {
                         least = hn::Min(least, value);
                         most = hn::Max(most, value);
                     }
                 }
-                sum = hn::MulAdd(hn::Set(d, wy[j]), line, sum);
+                sum = Fused(hn::Set(d, wy[j]), line, sum);
             }
             // What is not finite is mended, and clamped then.
             if constexpr (kClamps)

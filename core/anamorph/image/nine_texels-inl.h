@@ -53,12 +53,12 @@ class TapSums {
         const auto right = hn::Max(s, zero), left = hn::Sub(right, s);
         const auto down = hn::Max(t, zero);
         const auto below = hn::Mul(down, m_share), above = hn::Mul(hn::Sub(down, t), m_share);
-        m_corner[0] = hn::MulAdd(above, left, m_corner[0]);
-        m_corner[1] = hn::MulAdd(above, right, m_corner[1]);
-        m_corner[2] = hn::MulAdd(below, left, m_corner[2]);
-        m_corner[3] = hn::MulAdd(below, right, m_corner[3]);
-        m_before_x = hn::MulAdd(left, m_share, m_before_x);
-        m_behind_x = hn::MulAdd(right, m_share, m_behind_x);
+        m_corner[0] = Fused(above, left, m_corner[0]);
+        m_corner[1] = Fused(above, right, m_corner[1]);
+        m_corner[2] = Fused(below, left, m_corner[2]);
+        m_corner[3] = Fused(below, right, m_corner[3]);
+        m_before_x = Fused(left, m_share, m_before_x);
+        m_behind_x = Fused(right, m_share, m_behind_x);
         m_before_y = hn::Add(above, m_before_y);
         m_behind_y = hn::Add(below, m_behind_y);
     }

@@ -6,6 +6,8 @@
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
+#include "anamorph/number/fused-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
 namespace HWY_NAMESPACE {
@@ -20,7 +22,7 @@ struct Step {
 };
 
 HWY_INLINE V SquaredLength(const Step& s) {
-    return hn::MulAdd(s.x, s.x, hn::Mul(s.y, s.y));
+    return Fused(s.x, s.x, hn::Mul(s.y, s.y));
 }
 
 /// The step from the points at `from` to those `ahead` entries farther on.
@@ -44,12 +46,12 @@ HWY_INLINE Step TapOf(const Step& side, V squared_length) {
     const auto length = hn::Sqrt(hn::Max(squared_length, one));
     const auto q = hn::Sqrt(hn::Sub(length, one));
     auto p = hn::Set(d, 0.67825002f);
-    p = hn::MulAdd(p, q, hn::Set(d, -1.9987953f));
-    p = hn::MulAdd(p, q, hn::Set(d, 2.6146848f));
-    p = hn::MulAdd(p, q, hn::Set(d, -1.9126091f));
-    p = hn::MulAdd(p, q, hn::Set(d, 0.73018819f));
-    p = hn::MulAdd(p, q, hn::Set(d, 0.065956643f));
-    p = hn::MulAdd(p, q, hn::Set(d, 0.82220862f));
+    p = Fused(p, q, hn::Set(d, -1.9987953f));
+    p = Fused(p, q, hn::Set(d, 2.6146848f));
+    p = Fused(p, q, hn::Set(d, -1.9126091f));
+    p = Fused(p, q, hn::Set(d, 0.73018819f));
+    p = Fused(p, q, hn::Set(d, 0.065956643f));
+    p = Fused(p, q, hn::Set(d, 0.82220862f));
     const auto share = hn::Div(hn::Mul(hn::Mul(p, q), hn::Set(d, 0.5f)), length);
     return {hn::Mul(side.x, share), hn::Mul(side.y, share)};
 }

@@ -380,7 +380,7 @@ HWY_INLINE hn::Vec<Pair> LoadPair(const uint16_t* p) {
 template <class T, int kChannels>
 HWY_INLINE hn::Vec<Pair> MixRows(const T* HWY_RESTRICT p, ptrdiff_t row, float fy) {
     const auto above = LoadPair<kChannels>(p), below = LoadPair<kChannels>(p + row);
-    return hn::MulAdd(hn::Set(Pair(), fy), hn::Sub(below, above), above);
+    return Fused(hn::Set(Pair(), fy), hn::Sub(below, above), above);
 }
 
 /// Pixels k and k + 4 of the eight from i on.
@@ -395,7 +395,7 @@ HWY_INLINE hn::Vec<Pair> MixPixels(const T* HWY_RESTRICT origin, ptrdiff_t row, 
     // Three channels of half come without a gap: the fourth is the right texel's first.
     if constexpr (std::is_same_v<T, hwy::float16_t> && kChannels == 3)
         right = hn::CombineShiftRightBytes<12>(d, right, left);
-    return hn::MulAdd(hn::Broadcast<k>(fx), hn::Sub(right, left), left);
+    return Fused(hn::Broadcast<k>(fx), hn::Sub(right, left), left);
 }
 
 /// Eight pixels, k and k + 4 in v[k], to `out`, and a channel more.

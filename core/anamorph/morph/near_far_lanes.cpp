@@ -239,6 +239,9 @@ HWY_INLINE AxisError Both(const AxisError& s, const AxisError& t, V lebesgue) {
 
 /// A vector of lines as seen from a cell's centre.
 struct SeenLines {
+    HWY_INLINE SeenLines() {
+    }  // of the instruction set, which GCC does not give constructors that it writes itself
+
     V along_x, along_y, before, behind, beside;
     V far;       ///< dist
     V rounding;  ///< of their places

@@ -57,6 +57,7 @@ ParameterTable view_rows() {
         subimage(),
         tile(),
         mip(),
+        hash(),
     };
 }
 

@@ -92,6 +92,7 @@ ParameterTable style_rows() {
         overscan(),
         tile(),
         mip(),
+        hash(),
         enumeration(
             "style", "shaded",
             {{"shaded", figure::FigureStyle::shaded},

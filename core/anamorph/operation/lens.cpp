@@ -50,6 +50,7 @@ ParameterTable make_lens_table() {
         concatenate(),
         tile(),
         mip(),
+        hash(),
         filter(),
         clamp(),
         data_channels(),

@@ -35,6 +35,7 @@ ParameterTable make_map_table() {
         concatenate(),
         tile(),
         mip(),
+        hash(),
         filter(),
         clamp(),
         data_channels(),

@@ -55,6 +55,7 @@ ParameterTable make_morph_table() {
         subimage(),
         tile(),
         mip(),
+        hash(),
         filter(),
         clamp(),
         data_channels(),

@@ -68,6 +68,7 @@ ParameterTable make_mosaic_table() {
         subimage(),
         tile(),
         mip(),
+        hash(),
         concatenate(),
         filter(),
         clamp(),

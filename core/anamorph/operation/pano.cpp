@@ -191,6 +191,7 @@ ParameterTable make_pano_table() {
         concatenate(),
         tile(),
         mip(),
+        hash(),
         filter(),
         clamp(),
         data_channels(),

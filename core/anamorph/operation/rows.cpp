@@ -222,6 +222,12 @@ Parameter mip() {
     return toggle("mip", "0", "1: the picture has MIP levels");
 }
 
+Parameter hash() {
+    return toggle(
+        "hash", "0",
+        "1: the picture says its hash, anamorph:hash, for which all of it is drawn when it is opened");
+}
+
 Parameter tol() {
     return number("tol", "source pixels", "0.01", 0, kInfinity,
                   "most that a source point may be off; 0: every pixel exactly");

@@ -58,6 +58,7 @@ Parameter subimage();
 Parameter concatenate();
 Parameter tile();
 Parameter mip();
+Parameter hash();
 Parameter tol();
 Parameter colorspace(const std::string& doc);
 

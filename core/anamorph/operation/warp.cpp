@@ -40,6 +40,7 @@ ParameterTable make_warp_table() {
         concatenate(),
         tile(),
         mip(),
+        hash(),
         filter(),
         clamp(),
         data_channels(),

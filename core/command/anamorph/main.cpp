@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// anamorph: what operations there are, and their keys.
+// anamorph: what operations there are, and their keys. What it does with pictures is in anamorph-pictures, which needs OpenImageIO.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <string_view>
 
 #include "anamorph/version.h"
 #include "reference.h"
@@ -20,14 +27,28 @@ void print_help(const std::string& name) {
     std::cout << operation_page(*operation);
 }
 
+constexpr std::string_view kOfPictures[] = {"hash", "draw", "join"};
+
+/// Becomes the program beside this one that has these subcommands. Throws Error where it cannot.
+void run_pictures(char** argv) {
+    std::error_code error;
+    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::string program = (own.parent_path() / "anamorph-pictures").string();
+    execv(program.c_str(), argv);
+    throw Error(printable(program) + ": " + std::strerror(errno) + " (" + argv[1] +
+                " is there with OpenImageIO alone)");
+}
+
 int run(int argc, char** argv) {
     CLI::App app{"Image warping with a tolerance that holds", "anamorph"};
     app.require_subcommand(1);
     app.set_version_flag("--version", "anamorph " + std::string(version()));
     CLI::App* help = app.add_subcommand("help", "List the operations, or the keys of one");
+    app.footer("hash, draw and join: of pictures (anamorph hash --help)");
     std::string operation;
     help->add_option("OPERATION", operation, "Its name; without, all are listed");
     try {
+        if (argc > 1 && std::ranges::find(kOfPictures, argv[1]) != std::end(kOfPictures)) run_pictures(argv);
         app.parse(argc, argv);
         print_help(operation);
         if (std::cout.flush()) return 0;

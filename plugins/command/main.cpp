@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// anamorph-pictures, which anamorph runs: hash, draw and join.
+#include <OpenImageIO/imageio.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/operation/operation.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/version.h"
+#include "part_file.h"
+#include "picture_reader.h"
+
+extern "C" OIIO::ImageInput* anamorph_recipes_input_imageio_create();
+
+namespace anamorph::command {
+namespace {
+
+/// Recipes that read from recipes find them as the plugin's, with no plugin installed.
+void declare_recipes() {
+    static const char* const kFormat = "anamorph_recipes";
+    if (OIIO::is_imageio_format_name(kFormat)) return;
+    static std::vector<const char*> endings;
+    for (const Operation* operation : operations()) {
+        endings.push_back(operation->name.c_str());
+        for (const std::string& ending : operation->endings) endings.push_back(ending.c_str());
+    }
+    endings.push_back(nullptr);
+    OIIO::declare_imageio_format(kFormat, anamorph_recipes_input_imageio_create, endings.data(), nullptr,
+                                 nullptr, version());
+}
+
+/// Adds the subcommands; `run` is then what is to be done.
+void add_picture_commands(CLI::App& app, std::function<void()>& run) {
+    struct Given {
+        std::string recipe, output, part;
+        std::vector<std::string> names;
+    };
+    const auto given = std::make_shared<Given>();
+
+    CLI::App* hash = app.add_subcommand("hash", "Print the hash of pictures: of recipes and files");
+    hash->add_option("PICTURE", given->names, "A recipe, or a file that OpenImageIO reads")->required();
+    hash->callback([=, &run] {
+        run = [=] {
+            declare_recipes();
+            for (const std::string& name : given->names)
+                std::cout << hash_digits(hash_of(*open_picture(name))) << "  " << name << std::endl;
+        };
+    });
+
+    CLI::App* draw = app.add_subcommand("draw", "Draw a recipe's picture into a file, or a part of it");
+    draw->add_option("RECIPE", given->recipe, "view.pano, or pano.exr.pano?to=rectilinear&fov=90")
+        ->required();
+    draw->add_option("-o,--output", given->output, "The file; its ending says the format")
+        ->required()
+        ->option_text("FILE");
+    draw->add_option("--part", given->part,
+                     "A share of the picture's tiles, 3/8 the third of eight, for anamorph join; what FILE "
+                     "has of it already is not drawn again")
+        ->option_text("I/N");
+    draw->callback([=, &run] {
+        run = [=] {
+            declare_recipes();
+            if (given->part.empty())
+                draw_picture_file(given->recipe, given->output);
+            else
+                draw_part(given->recipe, share_of(given->part), given->output);
+        };
+    });
+
+    CLI::App* join =
+        app.add_subcommand("join", "Put parts of a picture together, check them and print its hash");
+    join->add_option("PART", given->names, "All files of anamorph draw --part, in any order")->required();
+    join->add_option("-o,--output", given->output, "The picture; without, parts are only checked")
+        ->option_text("FILE");
+    join->callback([=, &run] {
+        run = [=] { std::cout << hash_digits(join_parts(given->names, given->output)) << std::endl; };
+    });
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{"Pictures of recipes", "anamorph"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "anamorph " + std::string(version()));
+    std::function<void()> run;
+    add_picture_commands(app, run);
+    try {
+        app.parse(argc, argv);
+        run();
+        if (std::cout.flush()) return 0;
+        throw Error("the standard output cannot be written");
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
+        std::cerr << "anamorph: " << message_of(e, "the picture") << "\n";
+    } catch (const std::exception& e) {
+        std::cerr << "anamorph: " << message_of(e, "the picture") << "\n";
+    }
+    return 1;
+}
+
+}  // namespace
+}  // namespace anamorph::command
+
+int main(int argc, char** argv) {
+    return anamorph::command::run(argc, argv);
+}

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: Apache-2.0
+"""anamorph hash, draw and join: one hash, however a picture is drawn, stored, shared out, stopped and taken up again."""
+import os
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ["ANAMORPH"]
+DOCS = pathlib.Path(os.environ["ANAMORPH_DOCS"])
+VIEW = "src=noise.tif\nto=rectilinear\nfov=95\nyaw=30\nsize=900x700\n"
+
+
+def noise_ppm(width, height):
+    """An image of noise, in the simplest of formats."""
+    state, data = 1, bytearray()
+    for _ in range(3 * width * height):
+        state = (state * 1664525 + 1013904223) % 2**32
+        data.append(state >> 24)
+    return b"P6\n%d %d\n255\n" % (width, height) + bytes(data)
+
+
+class Pictures(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "noise.ppm").write_bytes(noise_ppm(256, 128))
+        (self.folder / "sky.pano").write_text(VIEW.replace("noise.tif", "noise.ppm"))
+
+    def run_program(self, *arguments, **more):
+        result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=100, **more)
+        return result.returncode, result.stdout, result.stderr
+
+    def ok(self, *arguments):
+        status, out, error = self.run_program(*arguments)
+        self.assertEqual((status, error), (0, ""), arguments)
+        return out
+
+    def hash(self, *names):
+        lines = self.ok("hash", *names).splitlines()
+        self.assertEqual([line[32:] for line in lines], ["  " + str(name) for name in names])
+        return [line[:32] for line in lines]
+
+    def refused(self, message, *arguments):
+        status, out, error = self.run_program(*arguments)
+        self.assertEqual((status, out), (1, ""), arguments)
+        self.assertIn(message, error)
+        self.assertTrue(error.startswith("anamorph: ") and error.count("\n") == 1 and len(error) < 400, error)
+
+    def test_files_and_recipes_have_one_hash(self):
+        for name in ("out.tif", "out.png", "out.ppm"):
+            self.ok("draw", "sky.pano", "-o", name)
+        self.assertEqual(len(set(self.hash("sky.pano", "out.tif", "out.png"))), 1)
+        whole = self.hash("sky.pano")[0]
+        for other in ("sky.pano?yaw=30.001", "sky.pano?size=900x701", "sky.pano?filter=nearest", "noise.ppm"):
+            self.assertNotEqual(self.hash(other)[0], whole)
+        self.assertEqual(self.hash("sky.pano?tile=64")[0], whole)
+        self.assertEqual(self.hash("sky.pano?tile=0")[0], whole)
+        self.assertEqual(list(self.folder.glob(".*")), [])
+
+    def test_is_the_hash_that_the_page_says(self):
+        """Written out with xxhsum, where it is there."""
+        if not shutil.which("xxhsum"):
+            self.skipTest("xxhsum is not there")
+
+        def xxh128(data):
+            out = subprocess.run(["xxhsum", "-H2"], input=data, capture_output=True, check=True).stdout
+            return out.decode().split()[0]
+
+        pixels = (self.folder / "noise.ppm").read_bytes()[-256 * 128 * 3:]
+        head = "anamorph hash 1\npicture 0 0 256 128 0 0 256 128\nchannel R uint8\nchannel G uint8\nchannel B uint8\n"
+        self.assertEqual(self.hash("noise.ppm")[0], xxh128(head.encode() + bytes.fromhex(xxh128(pixels))))
+
+    def test_a_recipe_says_its_hash(self):
+        if not shutil.which("oiiotool"):
+            self.skipTest("oiiotool is not there")
+        environment = dict(os.environ, OIIO_LIBRARY_PATH=os.environ["ANAMORPH_PLUGINS"], OPENIMAGEIO_PLUGIN_PATH=os.environ["ANAMORPH_PLUGINS"])
+        for name, says in (("sky.pano?hash=1", True), ("sky.pano?hash=1&tile=0&mip=1", True), ("sky.pano", False),
+                           ("noise.ppm.map?hash=1", True)):
+            out = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, env=environment, capture_output=True, text=True,
+                                 timeout=100)
+            self.assertEqual(out.returncode, 0, out.stdout + out.stderr)
+            said = re.findall('anamorph:hash: "([0-9a-f]*)"', out.stdout)
+            self.assertEqual(said, self.hash(name) if says else [])
+
+    def test_parts_make_the_whole(self):
+        whole = self.hash("sky.pano")[0]
+        for count in (1, 3, 13):  # of 12 tiles
+            names = [f"part{count}.{k}" for k in range(1, count + 1)]
+            for k, name in enumerate(names, 1):
+                self.ok("draw", "sky.pano", "--part", f"{k}/{count}", "-o", name)
+            self.assertEqual(self.ok("join", *reversed(names)).strip(), whole)
+            self.assertEqual(self.ok("join", *names, "-o", "joined.tif").strip(), whole)
+            self.assertEqual(self.hash("joined.tif")[0], whole)
+
+    def test_goes_on_where_it_was_stopped(self):
+        whole = self.hash("sky.pano")[0]
+        arguments = ("draw", "sky.pano", "--part", "1/1", "-o", "part")
+        self.ok(*arguments)
+        tiles, manifest = self.folder / "part", self.folder / "part.tiles"
+        pixels, text = tiles.read_bytes(), manifest.read_bytes()
+        # Stopped anywhere: between tiles, in one, in a line; with a line whose tile is lost or was changed.
+        lines = [m.end() for m in re.finditer(rb"\n", text)]
+        for text_bytes, pixel_bytes in ((lines[-1], 0), (lines[-1], 100000), (lines[-5], len(pixels)), (lines[-5] + 7, 700001),
+                                        (40, 30), (0, 0), (0, len(pixels)), (len(text), len(pixels))):
+            manifest.write_bytes(text[:text_bytes])
+            tiles.write_bytes(pixels[:pixel_bytes])
+            self.ok(*arguments)
+            self.assertEqual(tiles.read_bytes(), pixels)
+            self.assertEqual(manifest.read_bytes(), text)
+        tiles.write_bytes(pixels[:500] + b"?" + pixels[501:])
+        self.refused("tile 0 has not the hash", "join", "part")
+        self.ok(*arguments)
+        self.assertEqual(self.ok("join", "part").strip(), whole)
+        # What is whole is not drawn again; what is made of another file is.
+        self.ok(*arguments)
+        self.assertEqual(manifest.read_bytes(), text)
+        (self.folder / "noise.ppm").write_bytes(noise_ppm(256, 128)[:-3] + b"\0\0\0")
+        os.utime(self.folder / "noise.ppm", ns=(10**18, 10**18))
+        self.ok(*arguments)
+        self.assertNotEqual(text.split(b"\nspec")[0], manifest.read_bytes().split(b"\nspec")[0])
+
+    def test_killed_it_goes_on(self):
+        name = "sky.pano?size=3000x3000&tol=0&filter=bicubic"
+        arguments = [PROGRAM, "draw", name, "--part", "2/2", "-o", "half"]
+        for wait in (0.2, 0.4):
+            process = subprocess.Popen(arguments, cwd=self.folder)
+            time.sleep(wait)
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        self.ok(*arguments[1:])
+        self.ok("draw", name, "--part", "1/2", "-o", "other")
+        self.assertEqual(self.ok("join", "half", "other").strip(), self.hash(name)[0])
+
+    def test_interrupted_draw_leaves_nothing(self):
+        (self.folder / "out.tif").write_text("as it was")
+        process = subprocess.Popen([PROGRAM, "draw", "sky.pano?size=20000x20000&tol=0", "-o", "out.tif"], cwd=self.folder)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(), -signal.SIGINT)
+        self.assertEqual((self.folder / "out.tif").read_text(), "as it was")
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["noise.ppm", "out.tif", "sky.pano"])
+
+    def test_memory_stays_flat(self):
+        def peak(size):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+            self.ok("draw", "sky.pano?filter=nearest&size=" + size, "--part", "1/1", "-o", "flat")
+            return max(before, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)  # of all children so far
+
+        self.assertLess(peak("8000x6000"), 300000)  # KiB; the picture has 144 MB
+
+    def test_what_is_wrong_is_said(self):
+        self.refused("--part=0/3: must be I/N", "draw", "sky.pano", "--part", "0/3", "-o", "x")
+        for part in ("4/3", "1", "1/0", "a/b", "1/3x", "-1/3", "1/99999999999", "1/100001", ""):
+            if part:
+                self.refused("must be I/N", "draw", "sky.pano", "--part", part, "-o", "x")
+        self.assertFalse((self.folder / "x").exists())
+        self.refused("nothing.tif", "hash", "nothing.tif")
+        self.refused("fov=0", "hash", "sky.pano?fov=0")
+        self.refused("out.nothing", "draw", "sky.pano", "-o", "out.nothing")
+        self.refused("no/out.tif", "draw", "sky.pano", "-o", "no/out.tif")
+        for k in (1, 2, 3):
+            self.ok("draw", "sky.pano", "--part", f"{k}/3", "-o", f"p{k}")
+        self.refused("part 2 of 3 is missing", "join", "p1", "p3")
+        self.refused("part 3 of 3 is missing", "join", "p1", "p2")
+        self.refused("is part 1 a second time", "join", "p1", "p1", "p2", "p3")
+        self.refused("there is no such file", "join", "p4")
+        self.ok("draw", "sky.pano?yaw=1", "--part", "2/3", "-o", "q2")
+        self.refused("is a part of another picture", "join", "p1", "q2", "p3")
+        manifest = self.folder / "p2.tiles"
+        text = manifest.read_text()
+        manifest.write_text(text[:-40])
+        self.refused("is not finished", "join", "p1", "p2", "p3")
+        for broken in ("", "x", text[:60], text.replace("part 2 3", "part 3 2"), text.replace("part 2 3", "part 2 999999999"),
+                       text.replace("spec ", "spec 9"), text.replace("\ntiles 4", "\ntiles 5"), text[:-33] + "z" + text[-32:],
+                       text + "4 " + 32 * "0" + "\n", re.sub("<width>[0-9]*", "<width>-5", text),
+                       re.sub("<width>[0-9]*", "<width>2147483647", text), re.sub("<nchannels>[0-9]*", "<nchannels>0", text)):
+            manifest.write_text(broken)
+            self.refused("p2", "join", "p1", "p2", "p3")
+
+    def test_says_where_a_program_is_missing(self):
+        alone = shutil.copy(PROGRAM, self.folder)
+        result = subprocess.run([alone, "hash", "sky.pano"], capture_output=True, text=True, timeout=50)
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertRegex(result.stderr, r"^anamorph: .*/anamorph-pictures: No such file .*OpenImageIO alone\)\n$")
+
+    def test_parallel_as_the_page_shows_it(self):
+        if not shutil.which("parallel"):
+            self.skipTest("GNU parallel is not there")
+        block = re.search(r"\n\n(    parallel .*\n(?:    .*\n)*)", (DOCS / "hash.md").read_text())[1]
+        environment = dict(os.environ, PATH=os.path.dirname(PROGRAM) + ":" + os.environ["PATH"])
+        result = subprocess.run(["bash", "-euc", block], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=100)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([result.stdout.strip()] + self.hash("sky.tif"), 2 * self.hash("sky.pano"))
+
+
+if __name__ == "__main__":
+    unittest.main()
