@@ -22,7 +22,7 @@ NO_PROPERTY = {
     "vtkAnamorphFigureImage": {"SetTextureMapping"},  # AddTexture() is for programs
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
-    "vtkAnamorphPanoramaProjection": {"SetController"},
+    "vtkAnamorphPanoramaProjection": {"SetController", "SetTimeBudget"},  # the proxy gives it time
     "vtkAnamorphProjectionBake": {"SetController"},
     "vtkAnamorphReliefSource": {"SetSize"},
 }
@@ -45,8 +45,8 @@ NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
             for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
-# A panel shows a slider for what has two ends. Ends beyond this are left to the filter.
-FAR = 1e9
+# A panel shows a slider for what has two ends, of which none can be dragged over so much. Ends beyond this are left to the filter.
+FAR = 1e5
 
 
 def proxies():
@@ -206,7 +206,8 @@ def check_whole(element, rows, menus):
         elif name in LEAST_ALONE:
             assert shown == {"min": LEAST_ALONE[name], "max": None}, (where, shown)
         else:
-            least, most = clamped_to(cls, command, int(p.get("number_of_elements")), number)
+            least, most = (end if end is None or abs(end) < FAR else None
+                           for end in clamped_to(cls, command, int(p.get("number_of_elements")), number))
             assert shown == {"min": least, "max": most}, (where, shown, least, most)
     return seen
 
