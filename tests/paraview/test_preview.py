@@ -39,7 +39,7 @@ def tell(*_):
         Render(view)
         never = projection.GetPropertyValue("UsedTolerance")
         projection.PreviewTime = 0.05
-        GetAnimationTrack("Tolerance", proxy=projection).KeyFrames[0].KeyValues = [.125]
+        GetAnimationTrack("Tolerance", proxy=projection)
         projection.Direction = [0, 0, 1]
         Render(view)
         with open({folder!r} + "/end.new", "w") as file:

@@ -41,6 +41,7 @@ struct vtkSMAnamorphDeformProxy::Edits {
     std::vector<double> list;  ///< without what the handles do
     std::optional<Point> center, corner, vector, tip;
     std::optional<Frame> frame;  ///< that the handles are shown in
+    bool depths = false;         ///< Depths is set
 };
 
 namespace {
@@ -63,20 +64,20 @@ void set_numbers(vtkSMProxy* proxy, const char* name, const double* numbers, std
 /// A row of the list, and the plane that its numbers are on.
 struct Row {
     double* numbers;
-    Frame frame;
+    std::optional<Frame> frame;  ///< none where it is not known yet: handles then say nothing
 
     double center(unsigned int i) const { return numbers[kCenter + i]; }
     double corner(unsigned int i) const { return numbers[kCenter + i] + numbers[kExtent + i]; }
 
     void move_center(const Point& handle) const {
-        if (frame.is_over(center(0), center(1), handle)) return;
-        const Point at = frame.parameters(handle);
+        if (frame->is_over(center(0), center(1), handle)) return;
+        const Point at = frame->parameters(handle);
         for (unsigned int i = 0; i < 2; ++i) numbers[kCenter + i] = at[i];
     }
     /// A corner beside the centre tells no extent that way.
     void move_corner(const Point& handle) const {
-        if (frame.is_over(corner(0), corner(1), handle)) return;
-        const Point at = frame.parameters(handle);
+        if (frame->is_over(corner(0), corner(1), handle)) return;
+        const Point at = frame->parameters(handle);
         for (unsigned int i = 0; i < 2; ++i)
             if (const double extent = std::fabs(at[i] - center(i)); extent > 0) numbers[kExtent + i] = extent;
     }
@@ -88,21 +89,20 @@ struct Row {
     void set_vector(const Point& vector) const { std::copy(vector.begin(), vector.end(), numbers + kVector); }
 };
 
-/// The row that is selected. None where there is none, or the plane is not known yet.
+/// The row that is selected. None where there is none.
 std::optional<Row> selected_row(vtkSMProxy* proxy, std::vector<double>& list) {
     const unsigned int columns = columns_of(proxy->GetProperty("Deformations"));
     const int selected = vtkSMPropertyHelper(proxy, "SelectedDeformation", true).GetAsInt();
     if (columns < kLeastColumns || selected < 0) return std::nullopt;
     const std::size_t first = static_cast<std::size_t>(selected) * columns;
-    const std::optional<Frame> frame = frame_of(proxy);
-    if (!frame || list.size() < first + columns) return std::nullopt;
-    return Row{list.data() + first, *frame};
+    if (list.size() < first + columns) return std::nullopt;
+    return Row{list.data() + first, frame_of(proxy)};
 }
 
 /// How far from the plane the centre's handle is: where it is, if it was put there, or as high as the surface.
 double height_of_handles(vtkSMProxy* proxy, const Row& row, bool put, double surface) {
     const std::optional<Point> at = point_of(proxy, "SelectedCenter");
-    return put && at ? row.frame.parameters(*at)[2] : surface;
+    return put && at ? row.frame->parameters(*at)[2] : surface;
 }
 
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
@@ -132,7 +132,11 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     const WhileHeld step(this->InStep);
     if (is_one_of(name, {"ImportFile", "ExportFile"})) this->FilesPending = true;
     // Where rows are set anew, so are their depths: the server then has those of the rows that there are.
-    if (is_one_of(name, {"Deformations"})) this->Superclass::SetPropertyModifiedFlag("Depths", 1);
+    if (is_one_of(name, {"Deformations"})) {
+        this->Superclass::SetPropertyModifiedFlag("Depths", 1);
+        this->ListEdited = true;
+    }
+    if (is_one_of(name, {"Depths"})) this->Pending->depths = true;
     if (is_one_of(name,
                   {"SelectedCenter", "SelectedCorner", "SelectedTip", "SelectedVector", "SelectedDeformation",
                    "Deformations", "Input", "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"}))
@@ -152,6 +156,8 @@ void vtkSMAnamorphDeformProxy::LoadState(const vtkSMMessage* message, vtkSMProxy
 }
 
 void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
+    // Not before: who sets a list may change its length first, and its numbers then.
+    this->RemoveDepths();
     if (!this->FilesPending) {
         this->Superclass::UpdateVTKObjects();
         return;
@@ -191,6 +197,65 @@ void vtkSMAnamorphDeformProxy::ImportDeformations(const char* file) {
 
 // ---- The list and the handles ----
 
+namespace {
+
+/// Which rows of a list a shorter one has kept, some perhaps edited: of all ways to remove so many rows the one in which the others change
+/// the fewest numbers, later rows removed where several do. None where a row would change by more than half.
+std::vector<std::size_t> kept_rows(const std::vector<double>& before, const std::vector<double>& after,
+                                   std::size_t columns) {
+    const std::size_t rows = before.size() / columns, left = after.size() / columns, gone = rows - left;
+    const auto changes = [&](std::size_t from, std::size_t to) {
+        std::size_t sum = 0;
+        for (std::size_t c = 0; c < columns; ++c)
+            sum += before[from * columns + c] != after[to * columns + c];
+        return sum > columns / 2 ? rows * columns : sum;
+    };
+    // least[i][k]: of the rows from i on, after k rows before it were removed.
+    std::vector<std::size_t> least((rows + 1) * (gone + 1), rows * columns);
+    const auto at = [&](std::size_t i, std::size_t k) -> std::size_t& { return least[i * (gone + 1) + k]; };
+    at(rows, gone) = 0;
+    for (std::size_t i = rows; i-- > 0;)
+        for (std::size_t k = 0; k <= std::min(gone, i); ++k) {
+            if (i - k < left) at(i, k) = std::min(at(i + 1, k) + changes(i, i - k), rows * columns);
+            if (k < gone) at(i, k) = std::min(at(i, k), at(i + 1, k + 1));
+        }
+    std::vector<std::size_t> kept;
+    if (at(0, 0) >= rows * columns) return kept;
+    for (std::size_t i = 0, k = 0; i < rows; ++i)
+        if (i - k < left && at(i, k) == at(i + 1, k) + changes(i, i - k))
+            kept.push_back(i);
+        else
+            ++k;
+    return kept;
+}
+
+}  // namespace
+
+/// Rows of the list that were removed take theirs of Depths along.
+void vtkSMAnamorphDeformProxy::RemoveDepths() {
+    if (!this->GetProperty("Deformations")) return;
+    constexpr std::size_t kDepth = 3, kMost = std::size_t{1} << 24;  // steps of the comparison
+    const WhileHeld step(this->InStep);
+    const std::vector<double> before = this->KnownList, after = numbers_of(this, "Deformations");
+    this->KnownList = after;
+    if (!this->ListEdited) return;
+    this->ListEdited = false;
+    const std::vector<double> depths = numbers_of(this, "Depths");
+    const std::size_t columns = columns_of(this->GetProperty("Deformations"));
+    if (this->Pending->depths || depths.empty() || columns == 0 || after.size() >= before.size() ||
+        before.size() % columns != 0 || after.size() % columns != 0)
+        return;
+    if (before.size() * (before.size() - after.size()) / columns > kMost) return;
+    const std::vector<std::size_t> kept = kept_rows(before, after, columns);
+    if (kept.empty() && !after.empty()) return;
+    std::vector<double> left;
+    for (const std::size_t row : kept)
+        if ((row + 1) * kDepth <= depths.size())
+            left.insert(left.end(), depths.begin() + static_cast<std::ptrdiff_t>(row * kDepth),
+                        depths.begin() + static_cast<std::ptrdiff_t>((row + 1) * kDepth));
+    set_numbers(this, "Depths", left.data(), left.size());
+}
+
 void vtkSMAnamorphDeformProxy::Edited(const char* name) {
     Edits& edits = *this->Pending;
     const std::string changed = name;
@@ -214,14 +279,18 @@ void vtkSMAnamorphDeformProxy::Resolve() {
     const Edits& edits = *this->Pending;
     std::vector<double> list = edits.list;
     if (const std::optional<Row> row = selected_row(this, list)) {
-        if (edits.center) row->move_center(*edits.center);
-        if (edits.corner) row->move_corner(*edits.corner);
+        if (edits.center && row->frame) row->move_center(*edits.center);
+        if (edits.corner && row->frame) row->move_corner(*edits.corner);
         if (edits.vector) row->set_vector(*edits.vector);
         if (edits.tip) {
             // From where the centre's handle is to be shown, whatever is set first.
-            const double height = height_of_handles(this, *row, this->HandlesPut, this->Heights[0]);
-            row->move_tip(*edits.tip,
-                          edits.center.value_or(row->frame.point(row->center(0), row->center(1), height)));
+            Point from = point_of(this, "SelectedCenter").value_or(Point{});
+            if (edits.center)
+                from = *edits.center;
+            else if (row->frame)
+                from = row->frame->point(row->center(0), row->center(1),
+                                         height_of_handles(this, *row, this->HandlesPut, this->Heights[0]));
+            row->move_tip(*edits.tip, from);
         }
     }
     set_numbers(this, "Deformations", list.data(), list.size());
@@ -234,7 +303,7 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
     std::vector<double> list = numbers_of(this, "Deformations");
     const std::optional<Row> row = selected_row(this, list);
     const std::optional<Point> at = point_of(this, "SelectedCenter");
-    if (!row || !at) return;
+    if (!row || !row->frame || !at) return;
     edits.frame = row->frame;
     // They are on the deformed surface of the last update, or where they have been put across the plane since.
     const bool lifted = edits.center.has_value() || (this->HandlesPut && !all);
@@ -245,9 +314,9 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
         if (all || !put) set_numbers(this, name, numbers, 3);
     };
     show("SelectedCenter", edits.center.has_value(),
-         row->frame.point(row->center(0), row->center(1), height).data());
+         row->frame->point(row->center(0), row->center(1), height).data());
     show("SelectedCorner", edits.corner.has_value(),
-         row->frame.point(row->corner(0), row->corner(1), corner_height).data());
+         row->frame->point(row->corner(0), row->corner(1), corner_height).data());
     Point tip = point_of(this, "SelectedCenter").value_or(*at);
     for (unsigned int c = 0; c < 3; ++c) tip[c] += row->numbers[kVector + c];
     show("SelectedTip", edits.tip.has_value(), tip.data());
@@ -269,9 +338,21 @@ void vtkSMAnamorphDeformProxy::PostUpdateData(bool using_cache) {
     if (moved || frame_of(this) != shown || !this->TipIsShown()) this->ShowHandles(true);
 }
 
+const double* vtkSMAnamorphDeformProxy::GetUsedPlane() {
+    const int mode = vtkSMPropertyHelper(this, "ParameterMode", true).GetAsInt();
+    return this->UsedPlaneKnown && mode == this->UsedMode ? this->UsedPlane : nullptr;
+}
+
 void vtkSMAnamorphDeformProxy::TakeUsedPlane() {
-    this->UsedPlaneKnown = vtkSMPropertyHelper(this, "ParameterMode").GetAsInt() == 0 &&
-                           vtkSMPropertyHelper(this, "AutomaticPlane").GetAsInt() != 0;
+    this->UsedMode = vtkSMPropertyHelper(this, "ParameterMode").GetAsInt();
+    if (this->UsedMode != 0) {
+        this->UpdatePropertyInformation(this->GetProperty("SelectedFrame"));
+        vtkSMPropertyHelper(this, "SelectedFrame").Get(this->UsedPlane, 9);
+        this->UsedPlaneKnown =
+            std::any_of(this->UsedPlane + 3, this->UsedPlane + 9, [](double x) { return x != 0; });
+        return;
+    }
+    this->UsedPlaneKnown = vtkSMPropertyHelper(this, "AutomaticPlane").GetAsInt() != 0;
     if (!this->UsedPlaneKnown) return;
     double* to = this->UsedPlane;
     for (const char* name : {"UsedOrigin", "UsedAxis1", "UsedAxis2"}) {
@@ -308,7 +389,7 @@ void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* n
 void vtkSMAnamorphDeformProxy::FreezePlane() {
     this->UpdatePipeline();
     const double* plane = this->GetUsedPlane();
-    if (!plane) return;
+    if (!plane || this->UsedMode != 0) return;
     const std::vector<double> kept(plane, plane + 9);
     set_numbers(this, "Origin", kept.data(), 3);
     set_numbers(this, "Axis1", kept.data() + 3, 3);

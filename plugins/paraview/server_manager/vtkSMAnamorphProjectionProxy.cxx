@@ -118,9 +118,9 @@ void vtkSMAnamorphProjectionProxy::Refine() {
     this->InStep = true;
     this->GiveTime(0);
     this->MarkDirty(this);
+    this->InStep = false;
     any_proxy(this, "views", [](vtkSMProxy* proxy) {
         if (auto* view = vtkSMRenderViewProxy::SafeDownCast(proxy)) view->StillRender();
         return false;
     });
-    this->InStep = false;
 }
