@@ -64,20 +64,20 @@ void set_numbers(vtkSMProxy* proxy, const char* name, const double* numbers, std
 /// A row of the list, and the plane that its numbers are on.
 struct Row {
     double* numbers;
-    std::optional<Frame> frame;  ///< none where it is not known yet: handles then say nothing
+    Frame frame;
 
     double center(unsigned int i) const { return numbers[kCenter + i]; }
     double corner(unsigned int i) const { return numbers[kCenter + i] + numbers[kExtent + i]; }
 
     void move_center(const Point& handle) const {
-        if (frame->is_over(center(0), center(1), handle)) return;
-        const Point at = frame->parameters(handle);
+        if (frame.is_over(center(0), center(1), handle)) return;
+        const Point at = frame.parameters(handle);
         for (unsigned int i = 0; i < 2; ++i) numbers[kCenter + i] = at[i];
     }
     /// A corner beside the centre tells no extent that way.
     void move_corner(const Point& handle) const {
-        if (frame->is_over(corner(0), corner(1), handle)) return;
-        const Point at = frame->parameters(handle);
+        if (frame.is_over(corner(0), corner(1), handle)) return;
+        const Point at = frame.parameters(handle);
         for (unsigned int i = 0; i < 2; ++i)
             if (const double extent = std::fabs(at[i] - center(i)); extent > 0) numbers[kExtent + i] = extent;
     }
@@ -89,20 +89,21 @@ struct Row {
     void set_vector(const Point& vector) const { std::copy(vector.begin(), vector.end(), numbers + kVector); }
 };
 
-/// The row that is selected. None where there is none.
+/// The row that is selected. None where there is none, or the plane is not known yet.
 std::optional<Row> selected_row(vtkSMProxy* proxy, std::vector<double>& list) {
     const unsigned int columns = columns_of(proxy->GetProperty("Deformations"));
     const int selected = vtkSMPropertyHelper(proxy, "SelectedDeformation", true).GetAsInt();
     if (columns < kLeastColumns || selected < 0) return std::nullopt;
     const std::size_t first = static_cast<std::size_t>(selected) * columns;
-    if (list.size() < first + columns) return std::nullopt;
-    return Row{list.data() + first, frame_of(proxy)};
+    const std::optional<Frame> frame = frame_of(proxy);
+    if (!frame || list.size() < first + columns) return std::nullopt;
+    return Row{list.data() + first, *frame};
 }
 
 /// How far from the plane the centre's handle is: where it is, if it was put there, or as high as the surface.
 double height_of_handles(vtkSMProxy* proxy, const Row& row, bool put, double surface) {
     const std::optional<Point> at = point_of(proxy, "SelectedCenter");
-    return put && at ? row.frame->parameters(*at)[2] : surface;
+    return put && at ? row.frame.parameters(*at)[2] : surface;
 }
 
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
@@ -279,18 +280,14 @@ void vtkSMAnamorphDeformProxy::Resolve() {
     const Edits& edits = *this->Pending;
     std::vector<double> list = edits.list;
     if (const std::optional<Row> row = selected_row(this, list)) {
-        if (edits.center && row->frame) row->move_center(*edits.center);
-        if (edits.corner && row->frame) row->move_corner(*edits.corner);
+        if (edits.center) row->move_center(*edits.center);
+        if (edits.corner) row->move_corner(*edits.corner);
         if (edits.vector) row->set_vector(*edits.vector);
         if (edits.tip) {
             // From where the centre's handle is to be shown, whatever is set first.
-            Point from = point_of(this, "SelectedCenter").value_or(Point{});
-            if (edits.center)
-                from = *edits.center;
-            else if (row->frame)
-                from = row->frame->point(row->center(0), row->center(1),
-                                         height_of_handles(this, *row, this->HandlesPut, this->Heights[0]));
-            row->move_tip(*edits.tip, from);
+            const double height = height_of_handles(this, *row, this->HandlesPut, this->Heights[0]);
+            row->move_tip(*edits.tip,
+                          edits.center.value_or(row->frame.point(row->center(0), row->center(1), height)));
         }
     }
     set_numbers(this, "Deformations", list.data(), list.size());
@@ -303,7 +300,7 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
     std::vector<double> list = numbers_of(this, "Deformations");
     const std::optional<Row> row = selected_row(this, list);
     const std::optional<Point> at = point_of(this, "SelectedCenter");
-    if (!row || !row->frame || !at) return;
+    if (!row || !at) return;
     edits.frame = row->frame;
     // They are on the deformed surface of the last update, or where they have been put across the plane since.
     const bool lifted = edits.center.has_value() || (this->HandlesPut && !all);
@@ -314,9 +311,9 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
         if (all || !put) set_numbers(this, name, numbers, 3);
     };
     show("SelectedCenter", edits.center.has_value(),
-         row->frame->point(row->center(0), row->center(1), height).data());
+         row->frame.point(row->center(0), row->center(1), height).data());
     show("SelectedCorner", edits.corner.has_value(),
-         row->frame->point(row->corner(0), row->corner(1), corner_height).data());
+         row->frame.point(row->corner(0), row->corner(1), corner_height).data());
     Point tip = point_of(this, "SelectedCenter").value_or(*at);
     for (unsigned int c = 0; c < 3; ++c) tip[c] += row->numbers[kVector + c];
     show("SelectedTip", edits.tip.has_value(), tip.data());
