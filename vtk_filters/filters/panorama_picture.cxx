@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "anamorph/error.h"
+#include "error_texts.h"
 #include "png_file.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
@@ -27,14 +27,6 @@ namespace {
 
 using anamorph::Error;
 
-/// Counts a reader's errors, which would be printed otherwise.
-class ErrorCount : public vtkCommand {
-  public:
-    static ErrorCount* New() { return new ErrorCount; }
-    void Execute(vtkObject*, unsigned long, void*) override { ++count; }
-    int count = 0;
-};
-
 vtkSmartPointer<vtkImageData> read(const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) throw Error("Picture", path, "there is no such file");
@@ -42,12 +34,11 @@ vtkSmartPointer<vtkImageData> read(const std::string& path) {
     const vtkSmartPointer<vtkImageReader2> reader =
         vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(path.c_str()));
     if (!reader) throw Error("Picture", path, "must be a picture that VTK's image readers know");
-    vtkNew<ErrorCount> errors;
-    reader->AddObserver(vtkCommand::ErrorEvent, errors);
+    const ErrorTexts errors(reader);
     reader->SetFileName(path.c_str());
     reader->Update();
     vtkSmartPointer<vtkImageData> image = reader->GetOutput();
-    if (errors->count > 0 || reader->GetErrorCode() != vtkErrorCode::NoError ||
+    if (errors.any() || reader->GetErrorCode() != vtkErrorCode::NoError ||
         !image->GetPointData()->GetScalars())
         throw Error("Picture", path, "it cannot be read");
     const int* size = image->GetDimensions();
