@@ -204,6 +204,9 @@ SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, 
 
 def bits_of(data):
     """Of all arrays and points of a data set; of an image, how many points there are."""
+    if data.IsA("vtkMultiBlockDataSet"):
+        blocks = [bits_of(data.GetBlock(k)) for k in range(data.GetNumberOfBlocks())]
+        return [(name, value) for block in blocks for name, value in block]
     found = []
     for fields in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
         for i in range(fields.GetNumberOfArrays()):
