@@ -194,6 +194,31 @@ for files, words in cases:
     assert files and reader.CanReadFile(files[0]) == (files[0].endswith(".obj")) or not files
     reader.Update()
     assert told and reader.GetOutputDataObject(0).GetNumberOfBlocks() == 0, words
+
+
+def damaged(change):
+    top, data = document("LINEAR")
+    change(top)
+    return write("damaged.gltf", top, data)
+
+
+# What leads out of a document, on which VTK's loader crashes.
+for change in (lambda top: top.update(meshes={"a": 1}), lambda top: top["nodes"][0].update(mesh=7),
+               lambda top: top["nodes"][0].update(mesh=-3), lambda top: top["nodes"][0].update(children=[9]),
+               lambda top: top["accessors"][0].update(count=10**9), lambda top: top["accessors"][0].update(bufferView=99),
+               lambda top: top["accessors"][0].update(type="VEC9"), lambda top: top["bufferViews"][0].update(byteLength=10**9),
+               lambda top: top["meshes"][0]["primitives"][0]["targets"][0].update(POSITION=99),
+               lambda top: top["meshes"][0]["primitives"][0].update(targets=[3]), lambda top: top.update(scene=4),
+               lambda top: top["animations"][0]["channels"][0].update(sampler=5),
+               lambda top: top["animations"][0]["samplers"][0].update(input=77),
+               lambda top: top["animations"][0]["channels"][0]["target"].update(node=5)):
+    told = []
+    reader = reader_of(damaged(change))
+    reader.AddObserver("ErrorEvent", lambda *_: told.append(1))
+    reader.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    assert reader.CanReadFile(reader.GetFileName(0)) == 0
+    reader.Update()
+    assert told and reader.GetOutputDataObject(0).GetNumberOfBlocks() == 0
 told = []
 reader = reader_of(os.path.join(folder, "face.gltf"))
 reader.SetWeight(2, 1)

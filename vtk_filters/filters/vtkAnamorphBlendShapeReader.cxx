@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -75,11 +76,127 @@ std::string json_of(const std::string& path) {
     return bytes.substr(20, length);
 }
 
+using anamorph::text_file::Json;
+
+/// A look at a document's indices and lengths: VTK's loader crashes on those that lead out of it.
+class Document {
+  public:
+    Document(const Json& top, const std::string& path) : m_top(top), m_path(path) {}
+
+    /// Throws Error where something leads nowhere.
+    void check() const {
+        if (!m_top.is_object()) fail("it is no object of JSON");
+        for (const char* list :
+             {"nodes", "meshes", "accessors", "bufferViews", "buffers", "animations", "scenes"})
+            each(m_top, list, [&](const Json& one) {
+                if (!one.is_object()) fail(std::string(list) + ": must be objects");
+            });
+        each(m_top, "nodes", [&](const Json& node) {
+            index(node, "mesh", "meshes");
+            indices(node, "children", "nodes");
+        });
+        each(m_top, "scenes", [&](const Json& scene) { indices(scene, "nodes", "nodes"); });
+        index(m_top, "scene", "scenes");
+        each(m_top, "bufferViews", [&](const Json& view) {
+            index(view, "buffer", "buffers");
+            const double end = number(view, "byteOffset") + number(view, "byteLength");
+            if (end > number(entry("buffers", number(view, "buffer")), "byteLength"))
+                fail("bufferViews: one ends beyond its buffer");
+        });
+        each(m_top, "accessors", [&](const Json& accessor) { check_accessor(accessor); });
+        each(m_top, "meshes", [&](const Json& mesh) {
+            each(mesh, "primitives", [&](const Json& primitive) {
+                index(primitive, "indices", "accessors");
+                attributes(primitive, "attributes");
+                each(primitive, "targets", [&](const Json& target) { attributes_of(target); });
+            });
+        });
+        each(m_top, "animations", [&](const Json& animation) {
+            each(animation, "samplers", [&](const Json& sampler) {
+                index(sampler, "input", "accessors");
+                index(sampler, "output", "accessors");
+            });
+            each(animation, "channels", [&](const Json& channel) {
+                if (!(number(channel, "sampler") < length(animation, "samplers")))
+                    fail("channels: there is no such sampler");
+                if (channel.contains("target")) index(channel.member("target"), "node", "nodes");
+            });
+        });
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& words) const { throw Error("FileName", m_path, words); }
+    /// A member that counts: a whole number from 0, or 0 where there is none.
+    double number(const Json& object, const std::string& key) const {
+        if (!object.is_object() || !object.contains(key)) return 0;
+        const Json value = object.member(key);
+        if (!value.is_number() || !(value.number() >= 0) || value.number() != std::floor(value.number()))
+            fail(key + "=" + value.text() + ": must be an integer of at least 0");
+        return value.number();
+    }
+    double length(const Json& object, const std::string& list) const {
+        if (!object.contains(list)) return 0;
+        if (!object.member(list).is_array()) fail(list + ": must be a list");
+        return static_cast<double>(object.member(list).size());
+    }
+    template <class Call>
+    void each(const Json& object, const std::string& list, const Call& call) const {
+        if (!object.is_object()) fail(list + ": must be in an object");
+        for (std::size_t i = 0; static_cast<double>(i) < length(object, list); ++i)
+            call(object.member(list)[i]);
+    }
+    Json entry(const std::string& list, double at) const {
+        if (!(at < length(m_top, list)))
+            fail(list + ": there is none of the number " + anamorph::shortest(at));
+        return m_top.member(list)[static_cast<std::size_t>(at)];
+    }
+    void index(const Json& object, const std::string& key, const std::string& list) const {
+        if (object.is_object() && object.contains(key)) entry(list, number(object, key));
+    }
+    void indices(const Json& object, const std::string& key, const std::string& list) const {
+        each(object, key, [&](const Json& at) {
+            if (!at.is_number() || !(at.number() >= 0) || !(at.number() < length(m_top, list)))
+                fail(key + ": there is none of the number " + at.text());
+        });
+    }
+    void attributes(const Json& primitive, const std::string& key) const {
+        if (primitive.contains(key)) attributes_of(primitive.member(key));
+    }
+    void attributes_of(const Json& object) const {
+        if (!object.is_object()) fail("attributes: must be an object");
+        for (const auto& [name, at] : object.members()) index(object, name, "accessors");
+    }
+    void check_accessor(const Json& accessor) const {
+        if (!accessor.contains("bufferView")) return;
+        const Json view = entry("bufferViews", number(accessor, "bufferView"));
+        double bytes = 1;
+        const double type = number(accessor, "componentType");
+        if (type == 5122 || type == 5123) bytes = 2;
+        if (type == 5125 || type == 5126) bytes = 4;
+        const std::string kind = accessor.contains("type") && accessor.member("type").is_string()
+                                     ? accessor.member("type").string()
+                                     : "";
+        static const std::map<std::string, double> components = {
+            {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+        const auto found = components.find(kind);
+        if (found == components.end()) fail("accessors: type=" + kind + ": must be one of glTF's");
+        const double size = bytes * found->second, stride = std::max(number(view, "byteStride"), size);
+        const double count = number(accessor, "count");
+        if (count > 0 &&
+            number(accessor, "byteOffset") + (count - 1) * stride + size > number(view, "byteLength"))
+            fail("accessors: one ends beyond its bufferView");
+    }
+
+    Json m_top;
+    std::string m_path;
+};
+
 /// The names that exporters give the targets of each mesh (extras.targetNames).
 std::vector<std::vector<std::string>> target_names(const std::string& path) {
     const anamorph::text_file::JsonFile file(json_of(path), path);
+    Document(file.top(), path).check();
     std::vector<std::vector<std::string>> all;
-    if (!file.top().is_object() || !file.top().contains("meshes")) return all;
+    if (!file.top().contains("meshes")) return all;
     for (const anamorph::text_file::Json& mesh : file.top().member("meshes").entries()) {
         std::vector<std::string>& names = all.emplace_back();
         if (!mesh.is_object() || !mesh.contains("extras") || !mesh.member("extras").is_object()) continue;
@@ -359,9 +476,11 @@ int vtkAnamorphBlendShapeReader::CanReadFile(const char* name) {
     try {
         if (ending_of(name) == ".obj") return 1;
         const anamorph::text_file::JsonFile file(json_of(name), name);
-        if (!file.top().is_object() || !file.top().contains("meshes")) return 0;
+        Document(file.top(), name).check();
+        if (!file.top().contains("meshes")) return 0;
         for (const auto& mesh : file.top().member("meshes").entries())
-            for (const auto& primitive : mesh.member("primitives").entries())
+            for (const auto& primitive :
+                 mesh.contains("primitives") ? mesh.member("primitives").entries() : std::vector<Json>())
                 if (primitive.contains("targets")) return 1;
     } catch (const std::exception&) {
         return 0;
