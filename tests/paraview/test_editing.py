@@ -5,6 +5,7 @@ texture coordinates, the overlay."""
 import csv
 import random
 
+import numpy as np
 import surfaces
 from paraview import servermanager
 from paraview.simple import *
@@ -126,6 +127,51 @@ def check_texture_coordinates(plane):
     data = servermanager.Fetch(deform)
     highest = max(range(data.GetNumberOfPoints()), key=lambda i: data.GetPoint(i)[2])
     close(data.GetPoint(highest), [-0.25, 0, 1])
+    # Handles are where the parameters are, on the deformed surface, and say where the bump goes in its plane there.
+    assert np.allclose(deform.SelectedCenter, [-0.25, 0, 1], atol=1e-5), deform.SelectedCenter
+    assert np.allclose(deform.SelectedTip, [-0.25, 0, 2], atol=1e-5), deform.SelectedTip
+    deform.SelectedCenter = [0.25, -0.1, 1]
+    assert np.allclose(deform.Deformations[:2], [0.75, 0.4], atol=1e-5), list(deform.Deformations)
+    deform.UpdatePipeline()
+    assert np.allclose(deform.SelectedCenter[:2], [0.25, -0.1], atol=1e-5), deform.SelectedCenter
+    # In one step with the choice of parameters, handles say nothing: where they belong is not known.
+    fresh = AnamorphDeform(Input=plane, Deformations=[0.25, 0.5, 0.1, 0.1, 0, 0, 1, 1, 1], ParameterMode=1,
+                           TextureCoordinates=["POINTS", "TextureCoordinates"], SelectedCenter=[7, 8, 9])
+    fresh.UpdatePipeline()
+    assert list(fresh.Deformations)[:2] == [0.25, 0.5], list(fresh.Deformations)
+
+
+def check_depths_follow(plane):
+    """Who removes a row of the list removes its depth; who sets the depths has the last word."""
+    def row(i):
+        return [i, 0.5, 0.1, 0.1, 0, 0, i, 0, 1]
+
+    def depth(*rows):
+        return [number for i in rows for number in (i, 1, 0)]
+
+    deform = AnamorphDeform(Input=plane, Deformations=row(1) + row(2) + row(3) + row(4), Depths=depth(1, 2, 3, 4))
+    for rows, kept in (((1, 3, 4), (1, 3, 4)), ((1, 3, 4, 5), (1, 3, 4)), ((3, 4, 5), (3, 4)), ((4, 5), (4,)), ((5,), ())):
+        deform.UpdatePipeline()
+        deform.Deformations = [number for i in rows for number in row(i)]
+        assert list(deform.Depths) == depth(*kept), (rows, list(deform.Depths))
+        deform.SMProxy.UpdatePropertyInformation()
+        own = list(deform.GetPropertyValue("DepthsInfo"))
+        assert own == [number for i in rows for number in ((i, 1, 0) if i in kept else (0, 0, 0))], own
+    # One row goes, and another one is edited.
+    deform.Deformations, deform.Depths = row(1) + row(2) + row(3), depth(1, 2, 3)
+    deform.UpdatePipeline()
+    deform.Deformations = row(2)[:6] + [9, 0, 1] + row(3)
+    assert list(deform.Depths) == depth(2, 3), list(deform.Depths)
+    # Another list altogether leaves the depths, and so does who sets both.
+    deform.UpdatePipeline()
+    deform.Deformations = [70, 71, 72, 73, 74, 75, 76, 1, 0]
+    assert list(deform.Depths) == depth(2, 3), list(deform.Depths)
+    deform.UpdatePipeline()
+    deform.Deformations, deform.Depths = row(1) + row(2), depth(1, 2)
+    deform.UpdatePipeline()
+    deform.Depths = depth(5, 6)
+    deform.Deformations = row(2)
+    assert list(deform.Depths) == depth(5, 6), list(deform.Depths)
 
 
 def check_overlay(deform):
@@ -223,6 +269,7 @@ check_handles(square, {"AutomaticPlane": 0, "Origin": [1, 0, 0], "Axis1": [0, 2,
               [1, 4, -3], [1, 5, -3.25])
 check_table(check_files(square), square)
 check_texture_coordinates(square)
+check_depths_follow(square)
 check_overlay(check_files(square))
 check_plane()
 check_handles_in_any_order(square)

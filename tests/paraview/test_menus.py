@@ -70,6 +70,14 @@ warped = simple.AnamorphDeform(Input=levels)
 warped.UpdatePipeline()
 assert warped.GetDataInformation().GetNumberOfPoints() == levels.GetDataInformation().GetNumberOfPoints() > 0
 
+# Pictures have one slice: filters of them are greyed out for volumes.
+slice_, ball = Wavelet(WholeExtent=[0, 9, 0, 9, 0, 0]), simple.Sphere()
+for source in (slice_, ball):
+    source.UpdatePipeline()
+for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView"):
+    allowed = [offered(name, source) for source in (slice_, wavelet, ball)]
+    assert allowed == [True, False, False], (name, allowed)
+
 
 def errors_of(filter, **values):
     told = []

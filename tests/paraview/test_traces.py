@@ -81,6 +81,15 @@ def another_row():
     apply(deform, SelectedDeformation=0, ComputeDisplacement=0)
 
 
+def shapes_of_files():
+    for k in (0, 1):
+        with open(f"shape{k}.obj", "w") as file:
+            file.write(f"v 0 0 {k}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    reader = AnamorphBlendShapeReader(registrationName="result", FileName=[os.path.abspath(f"shape{k}.obj") for k in (0, 1)])
+    apply(reader, Weights=[.5])
+    apply(reader, Weights=[.25], Animation=-1)
+
+
 def files_and_a_table():
     plane = upright_plane()
     table = CSVReader(FileName=[os.path.abspath("list.csv")])
@@ -185,7 +194,7 @@ def a_view_of_a_panorama():
     apply(view, Projection=3, Lens="kb4:k1=0.02")
 
 
-SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row,
+SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row, shapes_of_files,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
             a_panorama_baked, a_view_of_a_panorama]
@@ -195,6 +204,9 @@ SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, 
 
 def bits_of(data):
     """Of all arrays and points of a data set; of an image, how many points there are."""
+    if data.IsA("vtkMultiBlockDataSet"):
+        blocks = [bits_of(data.GetBlock(k)) for k in range(data.GetNumberOfBlocks())]
+        return [(name, value) for block in blocks for name, value in block]
     found = []
     for fields in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
         for i in range(fields.GetNumberOfArrays()):

@@ -1799,3 +1799,36 @@ TEST(VtkDeformDepth, HandlesAreOnTheDeformedSurface) {
     filter->Update();
     EXPECT_NEAR(filter->GetSelectedHeights()[0], 1.5, 1e-6);
 }
+
+TEST(VtkDeformDepth, TheFrameOfTextureCoordinatesTouchesTheDeformedSurface) {
+    vtkNew<vtkPlaneSource> source;
+    source->SetOrigin(1, 2, 3);
+    source->SetPoint1(3, 2, 4);
+    source->SetPoint2(1, 5, 3);
+    source->SetResolution(40, 40);
+    source->Update();
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    filter->SetParameterModeToTextureCoordinates();
+    filter->AddDeformation(.25, .5, .5, .5, 0, 0, 0);
+    filter->AddDeformation(.5, .5, .25, .25, 0, 0, 1);
+    filter->Update();
+    // Away from the bump: flat, to the rounding of texture coordinates in float.
+    filter->SetDeformation(1, .75, .5, .01, .01, 0, 0, 1);
+    filter->Update();
+    const double flat[9] = {1, 2, 3, 2, 0, 1, 0, 3, 0};
+    for (int i = 0; i < 9; ++i) EXPECT_NEAR(filter->GetSelectedFrame()[i], flat[i], 1e-4) << i;
+    // On the top of a wide one: it lies as the plane does, one higher.
+    filter->SetDeformation(1, .5, .5, .5, .5, 0, 0, 1);
+    filter->SetSelectedDeformation(1);
+    filter->Update();
+    const double* frame = filter->GetSelectedFrame();
+    EXPECT_NEAR(frame[2] + .5 * frame[5] + .5 * frame[8], 4.5, .01);
+    EXPECT_NEAR(frame[5], 1, .01);
+    EXPECT_NEAR(frame[8], 0, .01);
+    filter->SetSelectedDeformation(2);
+    EXPECT_EQ(filter->GetSelectedFrame()[3], 0);
+    filter->SetParameterModeToPlane();
+    filter->Update();
+    EXPECT_EQ(filter->GetSelectedFrame()[3], 0);
+}

@@ -15,6 +15,7 @@
 #include <vtkIntArray.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
+#include <vtkPNGWriter.h>
 #include <vtkPartitionedDataSet.h>
 #include <vtkPartitionedDataSetCollection.h>
 #include <vtkPlaneSource.h>
@@ -28,7 +29,10 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <random>
 #include <set>
@@ -501,6 +505,125 @@ TEST(VtkPanoramaProjection, CountsModificationsExecutesOnceAndPrints) {
     filter->SetInputData(room());
     expect_executed_once(filter);
     expect_overridden<Filter>("vtkAnamorphPanoramaProjection");
+}
+
+/// A picture of noise in a file, in bytes of so many channels.
+std::string noise_file(const std::string& name, int width, int height, int channels) {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(width, height, 1);
+    image->AllocateScalars(VTK_UNSIGNED_CHAR, channels);
+    std::mt19937 random(17);
+    auto* to = static_cast<unsigned char*>(image->GetScalarPointer());
+    for (int i = 0; i < width * height * channels; ++i) to[i] = static_cast<unsigned char>(random());
+    vtkNew<vtkPNGWriter> writer;
+    const std::string path = testing::TempDir() + name;
+    writer->SetFileName(path.c_str());
+    writer->SetInputData(image);
+    writer->Write();
+    return path;
+}
+
+TEST(VtkPanoramaProjection, ErrorsCountInTexelsOfThePictureWhichGoesWithWhatIsPainted) {
+    vtkNew<Filter> with, without;
+    for (Filter* filter : {with.Get(), without.Get()}) filter->SetInputData(room());
+    with->SetPicture(noise_file("panorama_rgb.png", 64, 32, 3));
+    without->SetPanoramaWidth(64);
+    without->SetPanoramaHeight(32);
+    with->Update();
+    without->Update();
+    ASSERT_GT(painted(with)->GetNumberOfCells(), 0);
+    EXPECT_EQ(painted(with)->GetNumberOfCells(), painted(without)->GetNumberOfCells());
+    EXPECT_EQ(field(painted(with), "anamorph:max_error"), field(painted(without), "anamorph:max_error"));
+    EXPECT_EQ(with->GetUsedTolerance(), 0.125);
+    const auto texels = [](vtkDataObject* data) {
+        return vtkUnsignedCharArray::SafeDownCast(data->GetFieldData()->GetAbstractArray("anamorph:picture"));
+    };
+    ASSERT_TRUE(texels(painted(with)));
+    EXPECT_FALSE(texels(painted(without)) || texels(rest(with)));
+    EXPECT_EQ(texels(painted(with))->GetNumberOfTuples(), 64 * 32);
+    std::mt19937 random(17);
+    for (int i = 0; i < 64 * 32 * 3; ++i)
+        ASSERT_EQ(texels(painted(with))->GetValue(i), static_cast<unsigned char>(random())) << i;
+    auto* size =
+        vtkIntArray::SafeDownCast(painted(with)->GetFieldData()->GetAbstractArray("anamorph:picture_size"));
+    ASSERT_TRUE(size && size->GetNumberOfValues() == 2);
+    EXPECT_EQ(size->GetValue(0), 64);
+    EXPECT_EQ(size->GetValue(1), 32);
+    // Written again with another size, it is read again.
+    noise_file("panorama_rgb.png", 16, 8, 1);
+    std::filesystem::last_write_time(with->GetPicture(),
+                                     std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
+    with->Modified();
+    with->Update();
+    EXPECT_EQ(texels(painted(with))->GetNumberOfTuples(), 16 * 8);
+    EXPECT_EQ(texels(painted(with))->GetComponent(0, 0), texels(painted(with))->GetComponent(0, 2));
+}
+
+TEST(VtkPanoramaProjection, LargePicturesGoAsMeansOfTheirTexels) {
+    vtkNew<Filter> filter;
+    filter->SetInputData(wall());
+    filter->SetTolerance(1000);
+    filter->SetPicture(noise_file("panorama_large.png", 8192, 2050, 1));
+    filter->Update();
+    auto* texels = vtkUnsignedCharArray::SafeDownCast(
+        painted(filter)->GetFieldData()->GetAbstractArray("anamorph:picture"));
+    ASSERT_TRUE(texels && texels->GetNumberOfTuples() == 4096 * 1025);
+    std::mt19937 random(17);
+    std::vector<unsigned char> noise(8192u * 2050u);
+    for (unsigned char& texel : noise) texel = static_cast<unsigned char>(random());
+    for (const int at : {0, 4095, 4096 * 500 + 77, 4096 * 1025 - 1}) {
+        const int x = 2 * (at % 4096), y = 2 * (at / 4096);
+        const auto from = [&](int i, int j) {
+            return noise[static_cast<std::size_t>(8192 * (y + j) + x + i)];
+        };
+        const double mean = (from(0, 0) + from(1, 0) + from(0, 1) + from(1, 1)) / 4.0;
+        EXPECT_NEAR(texels->GetComponent(at, 1), mean, 0.5) << at;
+    }
+}
+
+TEST(VtkPanoramaProjection, PicturesThatAreNoneAreNamed) {
+    const std::string broken = testing::TempDir() + "broken.png";
+    std::ofstream(broken) << "no picture";
+    for (const auto& [path, words] :
+         {std::pair<std::string, const char*>{"/no/such.png", "there is no such file"},
+          {broken, "broken.png"}}) {
+        vtkNew<Filter> filter;
+        filter->SetInputData(wall());
+        filter->SetPicture(path);
+        Errors errors(filter);
+        filter->Update();
+        EXPECT_THAT(errors.text(), testing::AllOf(HasSubstr("Picture"), HasSubstr(words)));
+        EXPECT_EQ(painted(filter)->GetNumberOfCells(), 0);
+    }
+}
+
+TEST(VtkPanoramaProjection, WithABudgetItIsCoarserAndSaysSo) {
+    vtkNew<Filter> fine, coarse, ample;
+    for (Filter* filter : {fine.Get(), coarse.Get(), ample.Get()}) {
+        filter->SetInputData(room());
+        filter->SetPanoramaWidth(512);
+        filter->SetPanoramaHeight(256);
+    }
+    coarse->SetTimeBudget(1e-9);
+    ample->SetTimeBudget(1e9);
+    for (const double none : {-1.0, kNan, 0.0}) {
+        fine->SetTimeBudget(none);
+        EXPECT_EQ(fine->GetTimeBudget(), 0) << none;
+    }
+    for (Filter* filter : {fine.Get(), coarse.Get(), ample.Get()}) {
+        filter->Update();
+        EXPECT_NEAR(area_of(painted(filter)), 24, 1e-3);
+        EXPECT_EQ(field(painted(filter), "anamorph:tol"), filter->GetUsedTolerance());
+        EXPECT_LE(field(painted(filter), "anamorph:max_error"), filter->GetUsedTolerance());
+    }
+    EXPECT_EQ(coarse->GetUsedTolerance(), 0.125 * 4096);
+    EXPECT_LT(painted(coarse)->GetNumberOfCells() * 10, painted(fine)->GetNumberOfCells());
+    EXPECT_EQ(ample->GetUsedTolerance(), 0.125);
+    EXPECT_EQ(painted(ample)->GetNumberOfCells(), painted(fine)->GetNumberOfCells());
+    // Without the budget it is as fine as any.
+    coarse->SetTimeBudget(0);
+    coarse->Update();
+    EXPECT_EQ(painted(coarse)->GetNumberOfCells(), painted(fine)->GetNumberOfCells());
 }
 
 }  // namespace

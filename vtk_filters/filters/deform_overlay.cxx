@@ -293,4 +293,63 @@ void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<Def
     if (glm::dot(found, found) < kNear) heights[1] = height_of(corner.mesh, corner.point);
 }
 
+void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]) {
+    struct Near {
+        double apart;
+        std::size_t mesh, point;
+        bool operator<(const Near& other) const {
+            return std::tie(apart, mesh, point) < std::tie(other.apart, other.mesh, other.point);
+        }
+    };
+    std::vector<Near> near;
+    for (std::size_t m = 0; m < std::min(meshes.size(), deformed.size()); ++m) {
+        if (!meshes[m]) continue;
+        const std::vector<glm::dvec2>& parameters = meshes[m]->parameters();
+        for (std::size_t i = 0; i < parameters.size(); ++i) {
+            const glm::dvec2 off = parameters[i] - at;
+            if (const double apart = glm::dot(off, off); std::isfinite(apart)) near.push_back({apart, m, i});
+        }
+    }
+    if (near.empty()) return;
+    constexpr std::size_t kPoints = 12;
+    const std::size_t count = std::min(kPoints, near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+    near.resize(count);
+    const auto place_of = [&](const Near& one) {
+        glm::dvec3 p;
+        undeformed[one.mesh]->GetPoint(static_cast<vtkIdType>(one.point), &p.x);
+        return p;
+    };
+    const auto parameters_of = [&](const Near& one) { return meshes[one.mesh]->parameters()[one.point]; };
+    // Least squares of P - P_0 = d (u - u_0) + e (v - v_0), nearer points weighing more.
+    const glm::dvec3 origin = place_of(near[0]);
+    const glm::dvec2 first = parameters_of(near[0]);
+    const double far = near.back().apart;
+    double uu = 0, uv = 0, vv = 0;
+    glm::dvec3 up(0.0), vp(0.0);
+    for (const Near& one : near) {
+        const double weight = far > 0 ? std::exp(-4 * one.apart / far) : 1;
+        const glm::dvec2 off = parameters_of(one) - first;
+        const glm::dvec3 place = place_of(one) - origin;
+        uu += weight * off.x * off.x;
+        uv += weight * off.x * off.y;
+        vv += weight * off.y * off.y;
+        up += weight * off.x * place;
+        vp += weight * off.y * place;
+    }
+    const double determinant = uu * vv - uv * uv;
+    if (!(determinant > 1e-12 * uu * vv)) return;
+    const glm::dvec3 d = (vv * up - uv * vp) / determinant, e = (uu * vp - uv * up) / determinant;
+    glm::dvec3 moved;
+    deformed[near[0].mesh]->GetPoint(static_cast<vtkIdType>(near[0].point), &moved.x);
+    const glm::dvec3 zero = moved - first.x * d - first.y * e;
+    for (int c = 0; c < 3; ++c) {
+        frame[c] = zero[c];
+        frame[3 + c] = d[c];
+        frame[6 + c] = e[c];
+    }
+}
+
 }  // namespace anamorph_vtk

@@ -40,4 +40,10 @@ void find_heights(const anamorph::Deformation& bump, const std::vector<std::uniq
                   const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
                   const anamorph::ParameterPlane& plane, double (&heights)[2]);
 
+/// Finds the plane that meshes touch at parameters, moved as their nearest point is: the point that it has at (u, v) = (0, 0), and its derivatives by u and v.
+/// Fitted to the points that are nearest in (u, v), so that on flat meshes it is exact but for rounding. What is not found is left as it is.
+void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]);
+
 }  // namespace anamorph_vtk

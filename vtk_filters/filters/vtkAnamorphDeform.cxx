@@ -186,7 +186,7 @@ struct vtkAnamorphDeform::Kept {
     std::vector<std::unique_ptr<DeformedMesh>> meshes;  ///< by leaf
     std::vector<Grid> grids;                            ///< by leaf
     anamorph_vtk::AutomaticPlane plane;
-    std::vector<vtkSmartPointer<vtkPointSet>> deformed;  ///< by leaf
+    std::vector<vtkSmartPointer<vtkPointSet>> deformed, undeformed;  ///< by leaf
     anamorph::ParameterPlane used_plane;
     bool on_plane = false;
 
@@ -379,6 +379,18 @@ double* vtkAnamorphDeform::GetSelectedHeights() {
                                    this->Meshes->used_plane, this->SelectedHeights);
     });
     return this->SelectedHeights;
+}
+
+double* vtkAnamorphDeform::GetSelectedFrame() {
+    std::fill_n(this->SelectedFrame, 9, 0.0);
+    const std::vector<Numbers>& all = this->DeformationList->GetAll();
+    const int position = this->SelectedDeformation;
+    if (position < 0 || position >= static_cast<int>(all.size()) || this->Meshes->on_plane)
+        return this->SelectedFrame;
+    const Numbers& numbers = all[static_cast<std::size_t>(position)];
+    anamorph_vtk::find_frame({numbers[0], numbers[1]}, this->Meshes->meshes, this->Meshes->undeformed,
+                             this->Meshes->deformed, this->SelectedFrame);
+    return this->SelectedFrame;
 }
 
 vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
@@ -611,6 +623,7 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
 void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
     this->NumberOfPointsComputed = 0;
     this->NumberOfUndefinedPoints = 0;
+    this->Meshes->undeformed.clear();
     this->Meshes->deformed.clear();  // so that the meshes alone hold the points that they write
     Run run{*this, outputs};
     const auto input = anamorph_vtk::without_levels(vtkDataObject::GetData(inputs[0]));
@@ -627,6 +640,8 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
         // Their points alone: who has the output may change its arrays.
         this->Meshes->deformed.push_back(vtkSmartPointer<vtkPointSet>::Take(leaf.out->NewInstance()));
         this->Meshes->deformed.back()->SetPoints(leaf.out->GetPoints());
+        this->Meshes->undeformed.push_back(vtkSmartPointer<vtkPointSet>::Take(leaf.in->NewInstance()));
+        this->Meshes->undeformed.back()->SetPoints(leaf.in->GetPoints());
     }
     this->Meshes->on_plane = run.settings.on_plane;
     this->Meshes->used_plane = run.settings.plane;

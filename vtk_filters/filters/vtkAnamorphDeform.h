@@ -260,10 +260,15 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * of a deformation of the filter's own list, by the last execution; at the centre, of several points over each other, where the
      * deformation moves it most. 0 where no point of this rank is moved by it, and for texture coordinates. Selecting another
      * deformation does not make the filter execute. The pointer is valid until the next call.
+     *
+     * For texture coordinates the frame is the plane that touches the surface at the deformation's centre, moved to where the deformed
+     * surface is: nine numbers, the point at (u, v) = (0, 0) of it, and how far space goes where u and where v goes 1, fitted to
+     * the points of this rank that are nearest in (u, v). It is all 0 where there are none, and for the plane.
      */
     void SetSelectedDeformation(int position) { this->SelectedDeformation = position < 0 ? 0 : position; }
     int GetSelectedDeformation() { return this->SelectedDeformation; }
     double* GetSelectedHeights() VTK_SIZEHINT(2);
+    double* GetSelectedFrame() VTK_SIZEHINT(9);
     ///@}
 
     vtkMTimeType GetMTime() override;
@@ -302,7 +307,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     bool ComputeNormals = true, ComputeDisplacement = true, GenerateOverlay = false;
     int OutputPointsPrecision = DEFAULT_PRECISION;
     int SelectedDeformation = 0;
-    double SelectedHeights[2] = {};
+    double SelectedHeights[2] = {}, SelectedFrame[9] = {};
     double ErrorBound = 0;
     vtkIdType NumberOfPointsComputed = 0, NumberOfUndefinedPoints = 0;
 

@@ -2,7 +2,9 @@
 #include "vtkAnamorphPanoramaProjection.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
@@ -17,6 +19,7 @@
 #include "execution.h"
 #include "input_times.h"
 #include "painted_mesh.h"
+#include "panorama_picture.h"
 #include "scene_shadow.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -133,7 +136,17 @@ void vtkAnamorphPanoramaProjection::PrintSelf(ostream& os, vtkIndent indent) {
     write("ViewUp", this->ViewUp);
     os << indent << "Tolerance: " << this->Tolerance << "\n"
        << indent << "Occlusion: " << this->Occlusion << "\n"
+       << indent << "Picture: " << (this->Picture.empty() ? "(none)" : this->Picture) << "\n"
+       << indent << "TimeBudget: " << this->TimeBudget << "\n"
+       << indent << "UsedTolerance: " << this->UsedTolerance << "\n"
        << indent << "Controller: " << this->Controller.Get() << "\n";
+}
+
+void vtkAnamorphPanoramaProjection::SetTimeBudget(double seconds) {
+    if (!(seconds > 0)) seconds = 0;
+    if (seconds == this->TimeBudget) return;
+    this->TimeBudget = seconds;
+    this->Modified();
 }
 
 void vtkAnamorphPanoramaProjection::SetController(vtkMultiProcessController* controller) {
@@ -197,6 +210,13 @@ int vtkAnamorphPanoramaProjection::RequestUpdateExtent(vtkInformation*, vtkInfor
     return 1;
 }
 
+/// The file that was read last; it is read again where it has been written since.
+struct vtkAnamorphPanoramaProjection::LoadedPicture {
+    std::string path;
+    std::filesystem::file_time_type written;
+    anamorph_vtk::PanoramaPicture picture;
+};
+
 /// One execution of the filter, step by step.
 struct vtkAnamorphPanoramaProjection::Run {
     vtkAnamorphPanoramaProjection& filter;
@@ -204,10 +224,18 @@ struct vtkAnamorphPanoramaProjection::Run {
     std::vector<vtkSmartPointer<vtkPolyData>> scene = {}, painted = {}, rest = {};
     std::optional<anamorph::Occluders> shadow = {};
     std::unique_ptr<anamorph::ScenePainter> painter = {};
+    const anamorph_vtk::PanoramaPicture* picture = nullptr;
+    anamorph::Size size{filter.PanoramaWidth, filter.PanoramaHeight};
+    double tol = 0;
 
     void take_scene(vtkDataObject* input, vtkDataObject* occluders);
     void cast_shadows(const std::vector<vtkSmartPointer<vtkPolyData>>& occluders);
+    void read_picture();
     void make_painter();
+    /// Cuts all at one tolerance, for progress from a number to another. Returns the seconds that the slowest rank took.
+    double paint_all(double at, double begin, double end);
+    /// Cuts until Tolerance is held, or the next cut would exceed the time.
+    void paint_within_budget();
     /// The size of the scene that all ranks have and the way to the projector: lengths compare with it.
     double scene_size() const;
     void paint(vtkPolyData* mesh, double begin, double end);
@@ -256,13 +284,13 @@ void vtkAnamorphPanoramaProjection::Run::make_painter() {
     anamorph::kPanniniDistanceRow.check(filter.PanniniDistance, "panorama d");
     const auto lens =
         filter.Lens && *filter.Lens ? anamorph::LensModel::parse(filter.Lens) : anamorph::LensModel{};
-    const anamorph::Chart panorama(anamorph::kProjections[filter.Projection], filter.PanoramaWidth,
-                                   filter.PanoramaHeight, filter.FieldOfView, anamorph::PixelSpacing::edges,
-                                   "panorama ", filter.PanniniDistance, lens);
+    const anamorph::Chart panorama(anamorph::kProjections[filter.Projection], size.width, size.height,
+                                   filter.FieldOfView, anamorph::PixelSpacing::edges, "panorama ",
+                                   filter.PanniniDistance, lens);
     const anamorph::Projector projector(
         panorama, {vector(filter.Position), vector(filter.Direction), vector(filter.ViewUp)});
     anamorph::ProjectionOptions options;
-    options.tol = filter.Tolerance;
+    options.tol = tol;
     options.smallest = std::min(scene_size(), 1e300) * 0x1p-22;
     for (vtkPolyData* mesh : scene)
         options.single =
@@ -296,7 +324,6 @@ void vtkAnamorphPanoramaProjection::Run::paint(vtkPolyData* mesh, double begin, 
 void vtkAnamorphPanoramaProjection::Run::hand_over(vtkPolyData* mesh,
                                                    const std::vector<std::vector<PaintedTriangle>>& pieces,
                                                    const anamorph::PaintedCounts& counts) {
-    const anamorph::Size size{filter.PanoramaWidth, filter.PanoramaHeight};
     anamorph_vtk::PaintedMesh with(mesh, &size), without(mesh, nullptr);
     vtkNew<vtkUnsignedCharArray> why;
     why->SetName("Painting");
@@ -315,11 +342,60 @@ void vtkAnamorphPanoramaProjection::Run::hand_over(vtkPolyData* mesh,
     for (auto* to : {&painted, &rest}) {
         to->push_back(vtkSmartPointer<vtkPolyData>::New());
         (to == &painted ? with : without).finish(to->back());
-        add_field_value(to->back(), "anamorph:tol", filter.Tolerance);
+        add_field_value(to->back(), "anamorph:tol", tol);
         add_field_value(to->back(), "anamorph:max_error", counts.max_error);
         add_field_value(to->back(), "anamorph:no_direction", static_cast<double>(counts.no_direction));
     }
     rest.back()->GetCellData()->AddArray(why);
+    if (picture) picture->add_to(painted.back()->GetFieldData());
+}
+
+void vtkAnamorphPanoramaProjection::Run::read_picture() {
+    if (filter.Picture.empty()) return;
+    std::error_code ignored;
+    const auto written = std::filesystem::last_write_time(filter.Picture, ignored);
+    if (!filter.Loaded || filter.Loaded->path != filter.Picture || filter.Loaded->written != written)
+        filter.Loaded = std::make_shared<const LoadedPicture>(
+            LoadedPicture{filter.Picture, written, anamorph_vtk::PanoramaPicture(filter.Picture)});
+    picture = &filter.Loaded->picture;
+    size = picture->size();
+}
+
+double vtkAnamorphPanoramaProjection::Run::paint_all(double at, double begin, double end) {
+    const auto start = std::chrono::steady_clock::now();
+    tol = at;
+    painted.clear();
+    rest.clear();
+    make_painter();
+    const double share = (end - begin) / static_cast<double>(std::max<std::size_t>(scene.size(), 1));
+    for (std::size_t i = 0; i < scene.size(); ++i)
+        paint(scene[i], begin + share * static_cast<double>(i), begin + share * static_cast<double>(i + 1));
+    double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (distributed(filter.Controller)) {
+        double most = seconds;
+        filter.Controller->AllReduce(&seconds, &most, 1, vtkCommunicator::MAX_OP);
+        seconds = most;
+    }
+    return seconds;
+}
+
+void vtkAnamorphPanoramaProjection::Run::paint_within_budget() {
+    constexpr double kFirst = 4096, kStep = 4;
+    double at = filter.Tolerance, begin = 0, spent = 0;
+    const double most = anamorph::kProjectionTolRow.most;
+    if (filter.TimeBudget > 0 && at > 0) at = std::max(at, std::min(at * kFirst, most));
+    for (;;) {
+        const bool last = at == filter.Tolerance;
+        const double end = last ? 1 : (1 + begin) / 2;
+        const double seconds = paint_all(at, begin, end);
+        spent += seconds;
+        begin = end;
+        // Errors go with the square of a triangle's size: a quarter of the tolerance takes four times as many triangles.
+        if (last || !(spent + kStep * seconds <= filter.TimeBudget)) break;
+        at = std::max(filter.Tolerance, at / kStep);
+    }
+    filter.UsedTolerance = tol;
+    execution.progress(1);
 }
 
 int vtkAnamorphPanoramaProjection::RequestData(vtkInformation*, vtkInformationVector** inputs,
@@ -328,10 +404,8 @@ int vtkAnamorphPanoramaProjection::RequestData(vtkInformation*, vtkInformationVe
     const auto execute = [&] {
         Run run{*this};
         run.take_scene(input, vtkDataObject::GetData(inputs[1]));
-        run.make_painter();
-        const double share = 1.0 / static_cast<double>(std::max<std::size_t>(run.scene.size(), 1));
-        for (std::size_t i = 0; i < run.scene.size(); ++i)
-            run.paint(run.scene[i], share * static_cast<double>(i), share * static_cast<double>(i + 1));
+        run.read_picture();
+        run.paint_within_budget();
         hand_out(input, run.painted, vtkDataObject::GetData(outputs, 0));
         hand_out(input, run.rest, vtkDataObject::GetData(outputs, 1));
         for (int port = 0; port < 2; ++port)

@@ -97,7 +97,11 @@ std::optional<Frame> automatic_frame(vtkSMProxy* deform) {
 }  // namespace
 
 std::optional<Frame> frame_of(vtkSMProxy* deform) {
-    if (toggle(deform, "ParameterMode") != 0) return Frame();
+    if (toggle(deform, "ParameterMode") != 0) {
+        auto* proxy = vtkSMAnamorphDeformProxy::SafeDownCast(deform);
+        const double* used = proxy ? proxy->GetUsedPlane() : nullptr;
+        return used ? frame_along(used, used + 3, used + 6) : std::nullopt;
+    }
     if (toggle(deform, "AutomaticPlane") != 0) return automatic_frame(deform);
     double origin[3], axes[2][3];
     vtkSMPropertyHelper(deform, "Origin").Get(origin, 3);

@@ -31,7 +31,8 @@ struct Frame {
 };
 
 /// The frame of a deform proxy: from its properties Origin, Axis1 and Axis2, or with AutomaticPlane as
-/// vtkAnamorphDeform had it last, or would take it from bounds. For texture coordinates it is x-y. None while
+/// vtkAnamorphDeform had it last, or would take it from bounds. For texture coordinates it touches the deformed surface at the
+/// centre of the selected deformation, as the last update left it. None while
 /// bounds are not known, or axes are parallel.
 std::optional<Frame> frame_of(vtkSMProxy* deform);
 

@@ -41,6 +41,7 @@ struct vtkSMAnamorphDeformProxy::Edits {
     std::vector<double> list;  ///< without what the handles do
     std::optional<Point> center, corner, vector, tip;
     std::optional<Frame> frame;  ///< that the handles are shown in
+    bool depths = false;         ///< Depths is set
 };
 
 namespace {
@@ -132,7 +133,11 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     const WhileHeld step(this->InStep);
     if (is_one_of(name, {"ImportFile", "ExportFile"})) this->FilesPending = true;
     // Where rows are set anew, so are their depths: the server then has those of the rows that there are.
-    if (is_one_of(name, {"Deformations"})) this->Superclass::SetPropertyModifiedFlag("Depths", 1);
+    if (is_one_of(name, {"Deformations"})) {
+        this->Superclass::SetPropertyModifiedFlag("Depths", 1);
+        this->ListEdited = true;
+    }
+    if (is_one_of(name, {"Depths"})) this->Pending->depths = true;
     if (is_one_of(name,
                   {"SelectedCenter", "SelectedCorner", "SelectedTip", "SelectedVector", "SelectedDeformation",
                    "Deformations", "Input", "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"}))
@@ -152,6 +157,8 @@ void vtkSMAnamorphDeformProxy::LoadState(const vtkSMMessage* message, vtkSMProxy
 }
 
 void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
+    // Not before: who sets a list may change its length first, and its numbers then.
+    this->RemoveDepths();
     if (!this->FilesPending) {
         this->Superclass::UpdateVTKObjects();
         return;
@@ -190,6 +197,65 @@ void vtkSMAnamorphDeformProxy::ImportDeformations(const char* file) {
 }
 
 // ---- The list and the handles ----
+
+namespace {
+
+/// Which rows of a list a shorter one has kept, some perhaps edited: of all ways to remove so many rows the one in which the others change
+/// the fewest numbers, later rows removed where several do. None where a row would change by more than half.
+std::vector<std::size_t> kept_rows(const std::vector<double>& before, const std::vector<double>& after,
+                                   std::size_t columns) {
+    const std::size_t rows = before.size() / columns, left = after.size() / columns, gone = rows - left;
+    const auto changes = [&](std::size_t from, std::size_t to) {
+        std::size_t sum = 0;
+        for (std::size_t c = 0; c < columns; ++c)
+            sum += before[from * columns + c] != after[to * columns + c];
+        return sum > columns / 2 ? rows * columns : sum;
+    };
+    // least[i][k]: of the rows from i on, after k rows before it were removed.
+    std::vector<std::size_t> least((rows + 1) * (gone + 1), rows * columns);
+    const auto at = [&](std::size_t i, std::size_t k) -> std::size_t& { return least[i * (gone + 1) + k]; };
+    at(rows, gone) = 0;
+    for (std::size_t i = rows; i-- > 0;)
+        for (std::size_t k = 0; k <= std::min(gone, i); ++k) {
+            if (i - k < left) at(i, k) = std::min(at(i + 1, k) + changes(i, i - k), rows * columns);
+            if (k < gone) at(i, k) = std::min(at(i, k), at(i + 1, k + 1));
+        }
+    std::vector<std::size_t> kept;
+    if (at(0, 0) >= rows * columns) return kept;
+    for (std::size_t i = 0, k = 0; i < rows; ++i)
+        if (i - k < left && at(i, k) == at(i + 1, k) + changes(i, i - k))
+            kept.push_back(i);
+        else
+            ++k;
+    return kept;
+}
+
+}  // namespace
+
+/// Rows of the list that were removed take theirs of Depths along.
+void vtkSMAnamorphDeformProxy::RemoveDepths() {
+    if (!this->GetProperty("Deformations")) return;
+    constexpr std::size_t kDepth = 3, kMost = std::size_t{1} << 24;  // steps of the comparison
+    const WhileHeld step(this->InStep);
+    const std::vector<double> before = this->KnownList, after = numbers_of(this, "Deformations");
+    this->KnownList = after;
+    if (!this->ListEdited) return;
+    this->ListEdited = false;
+    const std::vector<double> depths = numbers_of(this, "Depths");
+    const std::size_t columns = columns_of(this->GetProperty("Deformations"));
+    if (this->Pending->depths || depths.empty() || columns == 0 || after.size() >= before.size() ||
+        before.size() % columns != 0 || after.size() % columns != 0)
+        return;
+    if (before.size() * (before.size() - after.size()) / columns > kMost) return;
+    const std::vector<std::size_t> kept = kept_rows(before, after, columns);
+    if (kept.empty() && !after.empty()) return;
+    std::vector<double> left;
+    for (const std::size_t row : kept)
+        if ((row + 1) * kDepth <= depths.size())
+            left.insert(left.end(), depths.begin() + static_cast<std::ptrdiff_t>(row * kDepth),
+                        depths.begin() + static_cast<std::ptrdiff_t>((row + 1) * kDepth));
+    set_numbers(this, "Depths", left.data(), left.size());
+}
 
 void vtkSMAnamorphDeformProxy::Edited(const char* name) {
     Edits& edits = *this->Pending;
@@ -269,9 +335,21 @@ void vtkSMAnamorphDeformProxy::PostUpdateData(bool using_cache) {
     if (moved || frame_of(this) != shown || !this->TipIsShown()) this->ShowHandles(true);
 }
 
+const double* vtkSMAnamorphDeformProxy::GetUsedPlane() {
+    const int mode = vtkSMPropertyHelper(this, "ParameterMode", true).GetAsInt();
+    return this->UsedPlaneKnown && mode == this->UsedMode ? this->UsedPlane : nullptr;
+}
+
 void vtkSMAnamorphDeformProxy::TakeUsedPlane() {
-    this->UsedPlaneKnown = vtkSMPropertyHelper(this, "ParameterMode").GetAsInt() == 0 &&
-                           vtkSMPropertyHelper(this, "AutomaticPlane").GetAsInt() != 0;
+    this->UsedMode = vtkSMPropertyHelper(this, "ParameterMode").GetAsInt();
+    if (this->UsedMode != 0) {
+        this->UpdatePropertyInformation(this->GetProperty("SelectedFrame"));
+        vtkSMPropertyHelper(this, "SelectedFrame").Get(this->UsedPlane, 9);
+        this->UsedPlaneKnown =
+            std::any_of(this->UsedPlane + 3, this->UsedPlane + 9, [](double x) { return x != 0; });
+        return;
+    }
+    this->UsedPlaneKnown = vtkSMPropertyHelper(this, "AutomaticPlane").GetAsInt() != 0;
     if (!this->UsedPlaneKnown) return;
     double* to = this->UsedPlane;
     for (const char* name : {"UsedOrigin", "UsedAxis1", "UsedAxis2"}) {
@@ -308,7 +386,7 @@ void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* n
 void vtkSMAnamorphDeformProxy::FreezePlane() {
     this->UpdatePipeline();
     const double* plane = this->GetUsedPlane();
-    if (!plane) return;
+    if (!plane || this->UsedMode != 0) return;
     const std::vector<double> kept(plane, plane + 9);
     set_numbers(this, "Origin", kept.data(), 3);
     set_numbers(this, "Axis1", kept.data() + 3, 3);

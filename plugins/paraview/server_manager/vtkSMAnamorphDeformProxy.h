@@ -14,6 +14,9 @@
  * in the parameters that are chosen. A handle that is where the row has it changes nothing, to the bit. So
  * traces and macros, which have the handles beside the list, make the list that was recorded.
  *
+ * Where rows are removed from the list, and Depths is not set in the same step, the rows of Depths that belong to them
+ * go as well.
+ *
  * The automatic plane is that of the last update, or before one that of the input's bounds. The command
  * FreezePlane updates the filter and makes it Origin, Axis1 and Axis2, with AutomaticPlane off.
  *
@@ -29,6 +32,7 @@
 #include "vtkSMAnamorphSourceProxy.h"
 
 #include <memory>  // for the edits
+#include <vector>  // for lists
 
 class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamorphSourceProxy {
   public:
@@ -41,9 +45,10 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) override;
 
     /**
-     * Origin, Axis1 and Axis2 of the automatic plane of the last update; null where there was none.
+     * Origin, Axis1 and Axis2 of the automatic plane of the last update, or, for texture coordinates, of the plane that touches the deformed
+     * surface at the centre of the selected deformation; null where there was none, or the parameters are others than then.
      */
-    const double* GetUsedPlane() const { return this->UsedPlaneKnown ? this->UsedPlane : nullptr; }
+    const double* GetUsedPlane();
 
   protected:
     vtkSMAnamorphDeformProxy();
@@ -66,6 +71,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool TakeHeights();
     bool TipIsShown();
     void ImportDeformations(const char* file);
+    void RemoveDepths();
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
 
@@ -74,6 +80,9 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
     double UsedPlane[9] = {};
     bool UsedPlaneKnown = false;
+    int UsedMode = 0;                ///< ParameterMode of the last update
+    std::vector<double> KnownList;   ///< Deformations, as they were sent last
+    bool ListEdited = false;         ///< Deformations has been written to since
     double Heights[2] = {};          ///< of the handles of the centre and the corner over the plane
     std::unique_ptr<Edits> Pending;  ///< edits since the last update
 };

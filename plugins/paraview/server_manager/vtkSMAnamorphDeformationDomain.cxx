@@ -26,7 +26,8 @@ int vtkSMAnamorphDeformationDomain::SetDefaultValues(vtkSMProperty* property, bo
     const char* file = vtkSMPropertyHelper(deform, "FileName", true).GetAsString();
     if ((file && *file) || vtkSMPropertyHelper(deform, "Table", true).GetNumberOfElements() > 0) return 0;
     double bounds[6];
-    const std::optional<Frame> known = frame_of(deform);
+    const bool on_plane = vtkSMPropertyHelper(deform, "ParameterMode", true).GetAsInt() == 0;
+    const std::optional<Frame> known = on_plane ? frame_of(deform) : Frame();
     if (!input_bounds(deform, bounds) || !known) return 0;
     const Frame& frame = *known;
     const Point corners[2] = {frame.parameters({bounds[0], bounds[2], bounds[4]}),
