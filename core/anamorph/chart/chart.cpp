@@ -377,10 +377,15 @@ void Chart::set_branches() {
             b.pixel_y = joined ? 0.5 * m_height + b.centre_y * scale_y() : 0.5 * (box.y0 + box.y1);
             if (m_vertical.horizon) b.pixel_y = middle;
             if (has_joined_rows()) {
-                // From the picture's middle, which is a pixel edge or centre, faces are 2 units from each other: no rounding.
-                const int columns = faces_of(m_projection).columns;
-                b.pixel_x = 0.5 * m_width;
-                b.centre_x = columns - 1 - 2 * (static_cast<int>(i) % columns);
+                const int columns = faces_of(m_projection).columns, column = static_cast<int>(i) % columns;
+                const double margin = std::max(-m_padding, 0.0), sides = m_width - 2 * margin;
+                if (std::floor(margin) == margin && std::fmod(sides, columns) == 0) {
+                    b.pixel_x = margin + (column + 0.5) * (sides / columns);
+                } else {
+                    // From the picture's middle, which is a pixel edge or centre, faces are 2 units from each other: no rounding.
+                    b.pixel_x = 0.5 * m_width;
+                    b.centre_x = columns - 1 - 2 * column;
+                }
             }
             m_branches.push_back(b);
         }
