@@ -197,6 +197,25 @@ TEST(FeaturesSvg, EllipsesAreCurves) {
     for (const Point<double>& p :
          points(R"x(<ellipse id="c" cx="10" cy="20" rx="30" ry="5" transform="scale(2,1)"/>)x"))
         EXPECT_NEAR(std::hypot((p.x - 20) / 60, (p.y - 20) / 5), 1, 3e-4);
+    // Labels are enough, whatever is drawn, and however many there are without an id.
+    const std::string eyes = R"x(<circle inkscape:label="left" cx="10" cy="10" r="3"/>
+                                 <ellipse inkscape:label="right" cx="30" cy="10" rx="3" ry="2"/>
+                                 <path inkscape:label="nose" d="M 20 10 20 20"/>)x",
+                      turned = R"x(<path inkscape:label="nose" d="M 21 10 20 20"/>
+                                   <ellipse inkscape:label="right" cx="31" cy="10" rx="3" ry="2"/>
+                                   <ellipse inkscape:label="left" cx="11" cy="10" rx="3" ry="4"/>)x";
+    const Features by_label = parse_features_svg(svg(eyes, turned), "x.svg");
+    const Features by_id = parse_features_svg(
+        svg(R"x(<circle id="a" cx="10" cy="10" r="3"/><ellipse id="b" cx="30" cy="10" rx="3" ry="2"/>
+                <path id="c" d="M 20 10 20 20"/>)x",
+            R"x(<path id="c" d="M 21 10 20 20"/><ellipse id="b" cx="31" cy="10" rx="3" ry="2"/>
+                <ellipse id="a" cx="11" cy="10" rx="3" ry="4"/>)x"),
+        "x.svg");
+    ASSERT_EQ(by_label.size(), by_id.size());
+    for (std::size_t i = 0; i < by_id.size(); ++i)
+        for (const int k : {0, 1})
+            expect_line(by_label.line(i, k), by_id.line(i, k).p.x, by_id.line(i, k).p.y, by_id.line(i, k).q.x,
+                        by_id.line(i, k).q.y);
     EXPECT_THAT(message(parse_features_svg, svg(R"x(<circle id="c" r="0"/>)x", "")),
                 HasSubstr("radii above 0"));
 }

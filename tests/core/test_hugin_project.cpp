@@ -117,6 +117,7 @@ TEST(HuginProject, KnowsTheProjectionsOfPanoTools) {
                                         {9, equisolid},
                                         {14, orthographic},
                                         {15, equisolid},
+                                        {19, pannini},
                                         {21, hammer}})
         EXPECT_EQ(of_panorama(f), projection) << f;
     EXPECT_EQ(
@@ -124,7 +125,7 @@ TEST(HuginProject, KnowsTheProjectionsOfPanoTools) {
         "x.pto: row 1: f7: must be one of the projections that there are here, 0 (rectilinear), 1 "
         "(cylindrical), 2 "
         "(fisheye), 3 (fisheye), 4 (equirectangular), 8 (orthographic), 10 (stereographic), 21 (equisolid)");
-    for (const int f : {6, 8, 10, 11, 12, 13, 16, 17, 18, 19, 20})
+    for (const int f : {6, 8, 10, 11, 12, 13, 16, 17, 18, 20})
         EXPECT_THAT(parsed("p w3 h2 v90 f" + std::to_string(f) + "\n" + kImage).panorama->refused,
                     StartsWith("row 1: f" + std::to_string(f) + ": must be one of"));
 }
@@ -231,6 +232,31 @@ TEST(HuginProject, HasLimits) {
     EXPECT_EQ(error_of(masks), "x.pto: row 4098: must be one of at most 4096 masks");
     for (std::size_t i = 0; i <= kMostHuginCorners; ++i) corners += " 1 2";
     EXPECT_THAT(error_of(kImage + "k i0 t0 p\"" + corners + "\""), HasSubstr("3 to 4096 of them"));
+}
+
+// PanoTools' own words: t = (150 - compression) / 50, d = 1.5 / (t + 0.0001) - 1.5 / 3.0001.
+TEST(HuginProject, PanniniHasTheDistanceOfItsCompression) {
+    const auto panorama = [](const std::string& parameters) {
+        return parsed("p f19 w300 h200 v120 " + parameters + "\n" + kImage).panorama.value();
+    };
+    for (const auto& [text, d] : {std::pair{"", 0.99986668},
+                                  {"P\"100 0 0\"", 0.99986668},
+                                  {"P\"0 0 0\"", 0.0},
+                                  {"P\"50\"", 0.24997917},
+                                  {"P\"125 0 0\"", 2.4994168},
+                                  {"P\" 140  0 0 \"", 6.9962685}}) {
+        const HuginPanorama found = panorama(text);
+        EXPECT_EQ(found.projection, Projection::pannini);
+        EXPECT_EQ(found.refused, "");
+        EXPECT_NEAR(found.d.value(), d, 1e-5 * (1 + d)) << text;
+    }
+    for (const std::string bad :
+         {"P\"100 1 0\"", "P\"100 0 -20\"", "P\"151 0 0\"", "P\"-1 0 0\"", "P\"150 0 0\""})
+        EXPECT_THAT(panorama(bad).refused, HasSubstr("must be a compression from 0 to 149.9")) << bad;
+    for (const std::string bad : {"Px", "P\"1 2 3 4\"", "P\"nan 0 0\"", "P\"1e99 0 0\"", "P\"100 inf 0\""})
+        EXPECT_THAT(error_of("p f19 w300 h200 v120 " + bad + "\n" + kImage), HasSubstr("P")) << bad;
+    // Of others it means nothing.
+    EXPECT_FALSE(parsed("p f2 w300 h200 v120 P\"50 0 0\"\n" + kImage).panorama->d);
 }
 
 }  // namespace

@@ -129,6 +129,104 @@ TEST(ChartPadding, PicturesHoldTheirBounds) {
             }
 }
 
+/// The pixel of a direction in an equi-angular cube of `width` x `height` pixels with a margin around each row of faces, written out
+/// in long double. `column` and `row` say on which face.
+Point<long double> equi_angular_pixel(const Ray<double>& ray, int width, int height, long double margin,
+                                      int& column, int& row) {
+    const long double x = ray.x, y = ray.y, z = ray.z;
+    const long double ax = std::fabs(x), ay = std::fabs(y), az = std::fabs(z);
+    long double across, down, ahead;
+    if (ax >= ay && ax >= az) {
+        row = 0, column = x > 0 ? 2 : 0;
+        across = x > 0 ? -z : z, down = y, ahead = ax;
+    } else if (az >= ay && z > 0) {
+        row = 0, column = 1;
+        across = x, down = y, ahead = az;
+    } else if (az >= ay) {
+        // Behind, with its left side down: its upper edge is at the right.
+        row = 1, column = 1;
+        across = -y, down = -x, ahead = az;
+    } else {
+        row = 1, column = y > 0 ? 0 : 2;
+        across = y > 0 ? -z : z, down = -x, ahead = ay;
+    }
+    constexpr long double kPi = std::numbers::pi_v<long double>;
+    const long double side = (width - 2 * margin) / 3, tall = height / 2.0L - 2 * margin;
+    return {margin + side * (column + 0.5L + std::atan2(across, ahead) / (kPi / 2)),
+            row * (height / 2.0L) + margin + tall * (0.5L + std::atan2(down, ahead) / (kPi / 2))};
+}
+
+// Rows of faces with a margin around them alone, and faces that are no whole pixels wide, as films have them.
+TEST(ChartPadding, RowsOfFacesAreWhereTheyBelong) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::normal_distribution<double> normal;
+    for (const auto& [width, height] :
+         {std::pair{1280, 720}, {2560, 1440}, {640, 360}, {7, 8}, {1048573, 1048576}})
+        for (const int margin : {0, 2, 31}) {
+            if (margin > 0 && 8 * margin > std::min(width / 3, height / 2)) continue;
+            const Chart chart(eac, width, height, 0, PixelSpacing::edges, "", 1, {}, {}, -margin);
+            const double rounding = 1e-15 * 8 * std::max(width, height);
+            for (int i = 0; i < 2000; ++i) {
+                const Ray<double> ray{normal(random), normal(random), normal(random)};
+                const int piece = chart.piece_of(ray);
+                int column = 0, row = 0;
+                const Point<long double> truth = equi_angular_pixel(ray, width, height, margin, column, row);
+                ASSERT_EQ(piece, 3 * row + column);
+                const Point<double> found = chart.point(ray, piece);
+                EXPECT_NEAR(found.x, static_cast<double>(truth.x), rounding);
+                EXPECT_NEAR(found.y, static_cast<double>(truth.y), rounding);
+                // And what rounding is said to do.
+                using R = Rounded<double>;
+                const glm::dmat3 turned = glm::transpose(chart.branch(piece).axes);
+                const Point<R> bound = chart.local_point(
+                    transform(turned, Ray<R>{R(ray.x), R(ray.y), R(ray.z)}), chart.branch(piece));
+                EXPECT_LE(std::fabs(static_cast<double>(found.x - truth.x)), bound.x.error);
+                EXPECT_LE(std::fabs(static_cast<double>(found.y - truth.y)), bound.y.error);
+                const Ray<double> back = chart.ray(found.x, found.y, piece);
+                const double length = std::hypot(ray.x, ray.y, ray.z),
+                             other = std::hypot(back.x, back.y, back.z);
+                EXPECT_NEAR(ray.x / length, back.x / other, 1e-14);
+                EXPECT_NEAR(ray.y / length, back.y / other, 1e-14);
+                // A pixel belongs to the face that its middle lies on.
+                const Box& box = chart.pieces()[static_cast<std::size_t>(piece)].box;
+                EXPECT_GE(found.x, box.x0 - 0.5);
+                EXPECT_LE(found.x, box.x1 + 0.5);
+            }
+            int pixels = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                EXPECT_EQ(chart.pieces()[i].box.x0, pixels);
+                pixels = chart.pieces()[i].box.x1;
+            }
+            EXPECT_EQ(pixels, width);
+        }
+}
+
+TEST(ChartPadding, PicturesOfRowsHoldTheirBounds) {
+    const auto rows = [](int width, int height, double margin) {
+        return Chart(eac, width, height, 0, PixelSpacing::edges, "", 1, {}, {}, -margin);
+    };
+    for (const double tol : {0.5, 0.01, 1e-6, 0.0})
+        for (const auto& [from, to] : {std::pair{rows(320, 180, 2), chart_of(cubemap3x2, 64, 9)},
+                                       {rows(320, 180, 0), chart_of(fisheye, 96, 0)},
+                                       {chart_of(cubemap, 120, 0), rows(160, 90, 2)},
+                                       {rows(319, 200, 3), rows(161, 98, 0)}}) {
+            SCOPED_TRACE(testing::Message() << to.width() << "x" << to.height() << " tol " << tol);
+            ReprojectOptions options;
+            options.tol = tol;
+            options.output = Output::error;
+            const Picture picture =
+                reprojected_picture(Panorama(from, to, {20, 30, 40}, {-5, 3, 2}), options);
+            const double bound = picture.reached().max_error;
+            EXPECT_LE(bound, tol == 0 ? 1e-4 : tol);
+            std::vector<float> errors(static_cast<std::size_t>(picture.width() * picture.height()));
+            ASSERT_TRUE(picture.draw(nullptr, {0, 0, picture.width(), picture.height()},
+                                     packed_view(reinterpret_cast<std::byte*>(errors.data()),
+                                                 PixelType::float32, picture.width(), picture.height(), 1)));
+            EXPECT_LE(*std::max_element(errors.begin(), errors.end()), bound * (1 + 1e-6));
+        }
+}
+
 TEST(ChartPadding, ErrorsNameTheParameterItsValueAndWhatIsAllowed) {
     const auto error = [](Projection projection, double padding, const LensModel& lens = {},
                           const VerticalField& vertical = {}) -> std::string {

@@ -306,5 +306,49 @@ TEST(ProofConstants, WhereACircleShowsNothingItWeighsNothing) {
     EXPECT_GT(outside, 1000);
 }
 
+// What formulas make of numbers that are off themselves, next to the axis of a fisheye: sin t / t and cos t of t^2, and the angle of
+// (across, ahead) over across. Truths in long double, by series where t is small.
+TEST(ProofConstants, FisheyesHaveBoundsNextToTheirAxis) {
+    constexpr unsigned kOwnSeed = 20262;
+    SCOPED_TRACE(testing::Message() << "seed " << kOwnSeed);
+    std::mt19937 random(kOwnSeed);
+    std::uniform_real_distribution<double> exponent(-40, 0), part(-1, 1);
+    using R = Rounded<double>;
+    int bounded = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const bool is_on_axis = i % 5 == 0;
+        const double s = is_on_axis ? 0 : 0.5 * std::pow(10, exponent(random)),
+                     off = 0.4 * std::pow(10, exponent(random)),
+                     computed = std::max(s + off * part(random), 0.0);
+        double sinc, cosine;
+        projection::sinc_cos(computed, sinc, cosine);
+        R bound_sinc, bound_cosine;
+        projection::sinc_cos(R(Interval(s), 0, off), bound_sinc, bound_cosine);
+        const long double t = std::sqrt(static_cast<long double>(s));
+        const long double true_sinc = s < 1e-12 ? 1 - s / 6.0L : std::sin(t) / t, true_cosine = std::cos(t);
+        EXPECT_LE(std::fabs(static_cast<double>(sinc - true_sinc)), bound_sinc.error);
+        EXPECT_LE(std::fabs(static_cast<double>(cosine - true_cosine)), bound_cosine.error);
+        EXPECT_LE(bound_sinc.range.lo, static_cast<double>(true_sinc));
+        EXPECT_GE(bound_sinc.range.hi, static_cast<double>(true_sinc));
+
+        const double across = is_on_axis ? 0 : 0.5 * std::pow(10, exponent(random)),
+                     ahead = 1 + part(random) / 2, there = std::max(across + off * part(random), 0.0),
+                     before = ahead + 1e-3 * off * part(random);
+        const Heading along;
+        const double found = projection::tilt_over_across(there == 0, there, before, along);
+        const R of_across(Interval(across), 0, off), of_ahead(Interval(ahead), 0, 1e-3 * off);
+        const R bound = projection::tilt_over_across(is_zero(of_across), of_across, of_ahead, along);
+        const long double q = static_cast<long double>(across) / ahead;
+        const long double truth = (q < 1e-6L ? 1 - q * q / 3 : std::atan(q) / q) / ahead;
+        EXPECT_LE(std::fabs(static_cast<double>(found - truth)), bound.error)
+            << across << " " << ahead << " " << off;
+        if (!(bound.error < 10)) continue;
+        ++bounded;
+        EXPECT_LE(bound.range.lo, static_cast<double>(truth));
+        EXPECT_GE(bound.range.hi, static_cast<double>(truth));
+    }
+    EXPECT_GT(bounded, 15000);
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -488,8 +488,32 @@ TEST_F(Cameras, EquiAngularCubesMayBeOblong) {
     EXPECT_LT(mean_difference(read_floats("film.exr.pano?from=eac" + view),
                               read_floats("whole.exr.pano?from=latlong" + view)),
               0.02);
-    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&size=191x108"),
-                HasSubstr("faces of equal size, 3 across"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&size=192x107"),
+                HasSubstr("faces of equal height, 3 across"));
+    // Nor need faces be whole pixels wide, with a margin around their rows or without one.
+    for (const std::string film :
+         {"size=191x108", "size=160x90&padding=rows:2", "size=192x108&padding=rows:3"}) {
+        const std::string name = "film" + std::to_string(film.size()) + ".exr";
+        ASSERT_EQ(
+            run("oiiotool 'whole.exr.pano?from=latlong&to=eac&tol=0.0001&" + film + "' -o " + name).status,
+            0);
+        for (const std::string turn : {"", "&yaw=45", "&yaw=-135&pitch=10", "&pitch=90&roll=30"})
+            EXPECT_LT(mean_difference(read_floats(name + ".pano?from=eac" + view + turn),
+                                      read_floats("whole.exr.pano?from=latlong" + view + turn)),
+                      0.02)
+                << film << turn;
+    }
+    for (const std::string bad :
+         {"rows:", "rows:-1", "rows:x", "rows:2.5", "row:2", "rows:99999999", "2:rows"})
+        EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&size=160x90&padding=" + bad),
+                    HasSubstr("padding"))
+            << bad;
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&size=160x90&padding=2"),
+                HasSubstr("rows:2, around each row of faces, where 160 pixels are no multiple of 3"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap3x2&size=192x128&padding=rows:2"),
+                HasSubstr("rows: must be of eac, not of cubemap3x2"));
+    EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=eac&size=160x90&padding=rows:14"),
+                HasSubstr("less than a quarter of the sides"));
     EXPECT_THAT(open_error("whole.exr.pano?from=latlong&to=cubemap3x2&size=192x108"),
                 HasSubstr("square faces"));
 }

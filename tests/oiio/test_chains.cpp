@@ -242,6 +242,59 @@ TEST_F(Chains, HaveSoftEdges) {
     }
 }
 
+// Between two fisheyes of 150 degrees there is a band that neither sees: a pixel shows as much of them as it lies within, by samples of it.
+TEST_F(Chains, HaveSoftRimsOfTwoFisheyes) {
+    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 800x400 3 -d float -o pair.exr").status, 0);
+    constexpr int kSide = 160, kTimes = 16;
+    const std::string view =
+        "v.pano?from=equirectangular&to=rectilinear&fov=50&yaw=90&pitch=45&size=160x160&alpha=1&src=(m.pano?"
+        "src="
+        "pair.exr&from=dual_fisheye&srcfov=150&to=equirectangular&size=1024x512)";
+    EXPECT_EQ(chain_of(view), "pano of pano");
+    const std::vector<float> alpha = channel_of(read_floats(view), 4, 3);
+    ASSERT_EQ(alpha.size(), std::size_t{kSide} * kSide);
+    const double step = 2 * std::tan(25 * std::numbers::pi / 180) / kSide,
+                 least = std::cos(75 * std::numbers::pi / 180);
+    double largest = 0, sum = 0;
+    int faded = 0;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            int seen = 0;
+            for (int k = 0; k < kTimes * kTimes; ++k) {
+                // To the right of the view is straight behind, and to the left ahead.
+                const double x = (i + (k % kTimes + 0.5) / kTimes - kSide / 2) * step,
+                             y = (j + (k / kTimes + 0.5) / kTimes - kSide / 2) * step;
+                seen += std::fabs(x) / std::sqrt(x * x + y * y + 1) > least;
+            }
+            const double truth = seen / double{kTimes * kTimes},
+                         off = std::fabs(double{alpha[static_cast<std::size_t>(j * kSide + i)]} - truth);
+            largest = std::max(largest, off);
+            if (truth > 0 && truth < 1) ++faded, sum += off;
+        }
+    EXPECT_GT(faded, 200);
+    // Samples are 1/16 of a pixel apart, and edges straight within it.
+    EXPECT_LT(largest, 0.05);
+    EXPECT_LT(sum / faded, 0.02);
+}
+
+// A pixel's middle that goes through the axis of a fisheye on the way, and next to it, has a bound as others have, with any tolerance.
+TEST_F(Chains, HaveBoundsOnTheAxesOfFisheyes) {
+    write_panorama("globe.exr", 256, 128);
+    for (const std::string lens : {"fisheye", "equisolid", "stereographic", "orthographic"})
+        for (const std::string from : {"equirectangular&src=globe.exr", "fisheye&src=plate.exr"})
+            for (const std::string shift : {"", "&yaw=1e-13", "&pitch=-3e-15&roll=20"})
+                for (const double tol : {0.01, 1e-7}) {
+                    // Odd sizes have a pixel in the middle.
+                    const std::string keys = "&tol=" + std::to_string(tol) + "&scheme=exact";
+                    std::string name = "v.pano?from=" + lens + "&to=rectilinear&fov=80&size=101x101" + shift +
+                                       keys + "&src=(m.pano?to=" + lens + "&size=201x201" + keys +
+                                       "&from=" + from + ")";
+                    SCOPED_TRACE(name);
+                    EXPECT_EQ(chain_of(name), "pano of pano");
+                    EXPECT_LE(open(name)->spec().get_float_attribute("anamorph:max_error"), float(tol));
+                }
+}
+
 // A map that another program wrote, read by a view: its pixels are points of one smooth map.
 TEST_F(Chains, GoThroughStmaps) {
     ASSERT_EQ(run("oiiotool --resize 480x320 plate.exr -o large.exr").status, 0);

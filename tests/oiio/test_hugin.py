@@ -462,9 +462,9 @@ class Nona(PictureTest):
     def setUp(self):
         self.at = write_coordinates(400, 300)
 
-    def nona(self, panorama, made, more=""):
+    def nona(self, panorama, made, more="", crop=""):
         """What nona draws, whole, and the project."""
-        project = write_project(panorama, [made], more)
+        project = write_project(panorama, [made], more, crop)
         name = project[:-4]
         run("nona", "-o", name + "_", project)
         whole = np.zeros((panorama[2], panorama[1], 4))
@@ -524,6 +524,41 @@ class Nona(PictureTest):
                     self.assertLess(found, self.LARGEST)
         print(f"seed {SEED}: {pixels} pixels, largest distance {largest:.2g} source pixels", flush=True)
         self.assertGreater(pixels, 100000)
+
+    def test_shifts_of_cylinders_and_panoramas(self):
+        for f, fov in ((1, 140), (4, 100), (4, 360)):
+            for d, e in ((25.5, 0), (0, -17), (-60, 31.25)):
+                with self.subTest(f=f, fov=fov, d=d, e=e):
+                    made = image(self.at, f, 400, 300 if fov < 360 else 200, fov, 20, -10, 15)
+                    made["n"] = self.at if fov < 360 else write_coordinates(400, 200)
+                    made["d"], made["e"] = d, e
+                    theirs, project = self.nona((0, 300, 220, 90), made)
+                    mine = ours(project, "image=0")
+                    # Where alpha is less, black is mixed in.
+                    seen = (theirs[..., 3] > 0.99) & (mine[..., 3] > 0.99999)
+                    self.assertGreater(seen.sum(), 20000)
+                    x, y = points(mine)
+                    # Beside the seam each program mixes both ends.
+                    inside = seen & (x > 2) & (x < 398) & (y > 2) & (y < made["h"] - 2)
+                    self.assertLess(distance(theirs, x, y)[inside].max(), self.LARGEST)
+
+    def test_general_pannini(self):
+        """By its compression, of which 100 is the default; against nona alone, whose numbers are these."""
+        made = image(self.at, 0, 400, 300, 80, 12, 7, 5)
+        for compression in (None, 0, 40, 100, 125, 148):
+            for fov in (70, 150):
+                with self.subTest(compression=compression, fov=fov):
+                    written = "" if compression is None else f'P"{compression} 0 0"'
+                    theirs, project = self.nona((19, 360, 240, fov), made, crop=written)
+                    mine = ours(project, "image=0")
+                    # Where alpha is less, black is mixed in.
+                    seen = (theirs[..., 3] > 0.99) & (mine[..., 3] > 0.99999)
+                    self.assertGreater(seen.sum(), 5000)
+                    # Their pictures end alike, within a pixel on either side.
+                    self.assertLess(((theirs[..., 3] > 0.99) != (mine[..., 3] > 0.99)).sum(), 1500)
+                    x, y = points(mine)
+                    inside = seen & (x > 2) & (x < 398) & (y > 2) & (y < 298)
+                    self.assertLess(distance(theirs, x, y)[inside].max(), self.LARGEST)
 
     def test_crops(self):
         for f in (0, 1, 2, 3, 8, 10, 21):

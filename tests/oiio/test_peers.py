@@ -279,6 +279,30 @@ class Ffmpeg(PictureTest):
         difference = angles(theirs, mine, PANORAMA_PIXEL)
         self.assert_close(difference, 4, 6, "v360's eac, source pixels")
 
+    def test_equi_angular_films(self):
+        """The margin of v360's eac is that of padding=rows:2, also where faces are no whole pixels wide; in the margin its plane goes on
+        otherwise. Back again, what it drew is read as its own."""
+        save_pictures("centers", panorama_rays("centers"))
+        for width, height in ((640, 360), (400, 240), (1280, 720), (384, 256)):
+            size = f"{width}x{height}"
+            where = np.zeros((height, width), bool)
+            for row in (0, height // 2):
+                where[row + 2:row + height // 2 - 2, 2:width - 2] = True
+            self.compare("centers", f"e:eac:w={width}:h={height}",
+                         f"to=eac&size={size}&padding=rows:2&from=equirectangular&pixels=centers", PANORAMA_PIXEL, where)
+            film = self.v360("centers.tif", f"e:eac:w={width}:h={height}")
+            name = self.new_name(".exr")
+            write(name, film)
+            view = "&to=equirectangular&size=256x128"
+            mine = directions(recipe(name, "from=eac&srcpadding=rows:2" + view))
+            rays = unit(*[np.ascontiguousarray(c) for c in np.moveaxis(directions(
+                recipe("centers.tif", "from=equirectangular&pixels=centers" + view)), -1, 0)])
+            # Where faces meet each program mixes neighbors its own way.
+            found = angles(mine, rays, PANORAMA_PIXEL)
+            self.assert_close(found, 0.15, 1, f"{size} of v360 back, source pixels")
+            wrong = angles(directions(recipe(name, "from=eac" + view)), rays, PANORAMA_PIXEL)
+            self.assert_unlike(wrong, 0.2, size + " without its margin")
+
     def test_orientation(self):
         save_pictures("turned", panorama_rays("centers"))
         v_fov = 2 * np.degrees(np.arctan(0.75))  # 3:4 in the plane, not in degrees

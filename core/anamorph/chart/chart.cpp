@@ -68,20 +68,31 @@ double most_vfov(Projection projection) {
 // Heights of the plane that are taken for endless.
 constexpr double kEndless = 1e17;
 
+/// The pixel edges of columns of faces that fill a width but for a margin: each has the pixels whose centres lie on it.
+int column_edge(int column, int columns, int width, double margin) {
+    if (column == 0 || column == columns) return column == 0 ? 0 : width;
+    return static_cast<int>(std::ceil(margin + column * (width - 2 * margin) / columns - 0.5));
+}
+
 /// The faces of a layout at their places. Throws Error unless they are as large as each other, and square but where they need not be.
-std::vector<Piece> face_pieces(Projection projection, int width, int height, const std::string& parameter) {
+std::vector<Piece> face_pieces(Projection projection, int width, int height, double row_margin,
+                               const std::string& parameter) {
     const FaceGrid grid = faces_of(projection);
     const bool may_be_oblong =
         with_projection(projection, [](auto formulas) { return formulas.has_oblong_faces; });
     const int w = width / grid.columns, h = height / grid.rows;
-    if (w * grid.columns != width || h * grid.rows != height || (w != h && !may_be_oblong))
+    const bool is_whole = w * grid.columns == width && w == h;
+    if (h * grid.rows != height || !(is_whole || (may_be_oblong && width >= grid.columns)))
         throw Error(parameter, std::to_string(width) + "x" + std::to_string(height),
                     std::string(name_of(projection)) + " needs " +
-                        (may_be_oblong ? "faces of equal size, " : "square faces, ") +
+                        (may_be_oblong ? "faces of equal height, " : "square faces, ") +
                         std::to_string(grid.columns) + " across and " + std::to_string(grid.rows) + " down");
     std::vector<Piece> pieces;
     for (const Face& f : with_projection(projection, [](auto formulas) { return formulas.faces(); }))
-        pieces.push_back({{f.column * w, f.row * h, (f.column + 1) * w, (f.row + 1) * h}, f.axes, f.toward});
+        pieces.push_back({{column_edge(f.column, grid.columns, width, row_margin), f.row * h,
+                           column_edge(f.column + 1, grid.columns, width, row_margin), (f.row + 1) * h},
+                          f.axes,
+                          f.toward});
     return pieces;
 }
 
@@ -204,8 +215,10 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     check_numbers(prefix);
     if (m_fov == 0) m_fov = default_fov(projection);
     check_fov(projection, m_fov, m_setting, prefix + "fov");
+    // A margin that cannot be is refused below.
+    const double row_margin = padding < 0 && -4 * padding < width ? -padding : 0;
     if (faces_of(projection).columns > 0)
-        m_pieces = face_pieces(projection, width, height, size_name(prefix));
+        m_pieces = face_pieces(projection, width, height, row_margin, size_name(prefix));
     else
         m_pieces = {Piece{{0, 0, width, height}}};
     check_vertical(prefix, lens);
@@ -250,30 +263,57 @@ void Chart::check_vertical(const std::string& prefix, const LensModel& lens) con
 }
 
 void Chart::check_padding(const std::string& prefix, const LensModel& lens) const {
+    const bool has_whole_faces =
+        m_pieces.size() == 1 || m_width % std::max(1, faces_of(m_projection).columns) == 0;
+    if (!has_whole_faces && m_spacing == PixelSpacing::centers)
+        throw Error(size_name(prefix), std::to_string(m_width) + "x" + std::to_string(m_height),
+                    "pixels=centers needs faces of whole pixels");
     if (m_padding == 0) return;
+    const bool around_rows = m_padding < 0;
+    const double pixels = std::fabs(m_padding);
     const Box& face = m_pieces[0].box;
     const FaceGrid grid = faces_of(m_projection);
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
     const bool is_round =
         lensed == Lensed::equidistant || lensed == Lensed::stereographic || lensed == Lensed::axial;
+    const std::string name(name_of(m_projection)), text = (around_rows ? "rows:" : "") + brief(pixels);
     if (grid.joined || (grid.columns == 0 && !is_round))
-        throw Error(prefix + "padding", brief(m_padding),
-                    "must be of a layout of faces or of a fisheye, which " +
-                        std::string(name_of(m_projection)) + " is not");
+        throw Error(prefix + "padding", text,
+                    "must be of a layout of faces or of a fisheye, which " + name + " is not");
+    const bool may_be_oblong =
+        with_projection(m_projection, [](auto formulas) { return formulas.has_oblong_faces; });
+    const std::string allowed = "must be 0 or more, and less than a quarter of the sides, " +
+                                std::to_string(face.width()) + "x" + std::to_string(face.height()) +
+                                " pixels";
+    if (around_rows && (!may_be_oblong || m_spacing == PixelSpacing::centers))
+        throw Error(prefix + "padding", text,
+                    may_be_oblong ? "rows: must not be given with pixels=centers"
+                                  : "rows: must be of eac, not of " + name + ": " + allowed);
+    if (!around_rows && !has_whole_faces)
+        throw Error(prefix + "padding", text,
+                    "must be of faces of whole pixels, or rows:" + brief(pixels) +
+                        ", around each row of faces, where " + std::to_string(m_width) +
+                        " pixels are no multiple of " + std::to_string(grid.columns));
     if (lens.kind != LensModel::Kind::none || m_vertical.fov != 0)
-        throw Error(prefix + "padding", brief(m_padding),
+        throw Error(prefix + "padding", text,
                     "must not be given with " + prefix + (m_vertical.fov != 0 ? "vfov" : "lens"));
     // Angles of equi-angular faces then stay below 90 degrees up to the edges.
-    if (!(m_padding > 0 && 4 * m_padding < std::min(face.width(), face.height())))
-        throw Error(prefix + "padding", brief(m_padding),
-                    "must be 0 or more, and less than a quarter of the sides, " +
-                        std::to_string(face.width()) + "x" + std::to_string(face.height()) + " pixels");
+    if (!(pixels >= 0 && 4 * pixels < std::min(face.width(), face.height())))
+        throw Error(prefix + "padding", text, allowed);
+}
+
+bool Chart::has_joined_rows() const {
+    const FaceGrid grid = faces_of(m_projection);
+    return grid.columns > 0 && !grid.joined && (m_padding < 0 || m_width % grid.columns != 0);
 }
 
 void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     // A difference is off by a unit at most, which is within what width_units says.
-    const long double columns = m_pieces[0].box.width() - 2.0L * m_padding,
-                      rows = m_pieces[0].box.height() - 2.0L * m_padding;
+    const long double margin = 2.0L * std::fabs(m_padding);
+    // Of joined rows the faces share what their margin leaves: a quotient more.
+    const long double columns = has_joined_rows() ? (m_width - margin) / faces_of(m_projection).columns
+                                                  : m_pieces[0].box.width() - margin,
+                      rows = m_pieces[0].box.height() - margin;
     const long double plane =
         with_projection(m_projection, [&](auto formulas) { return formulas.width(m_fov, m_setting); });
     m_setting.half_width = static_cast<double>(plane / 2);
@@ -336,6 +376,17 @@ void Chart::set_branches() {
             b.pixel_x = joined ? 0.5 * m_width + b.centre_x * scale_x() : 0.5 * (box.x0 + box.x1);
             b.pixel_y = joined ? 0.5 * m_height + b.centre_y * scale_y() : 0.5 * (box.y0 + box.y1);
             if (m_vertical.horizon) b.pixel_y = middle;
+            if (has_joined_rows()) {
+                const int columns = faces_of(m_projection).columns, column = static_cast<int>(i) % columns;
+                const double margin = std::max(-m_padding, 0.0), sides = m_width - 2 * margin;
+                if (std::floor(margin) == margin && std::fmod(sides, columns) == 0) {
+                    b.pixel_x = margin + (column + 0.5) * (sides / columns);
+                } else {
+                    // From the picture's middle, which is a pixel edge or centre, faces are 2 units from each other: no rounding.
+                    b.pixel_x = 0.5 * m_width;
+                    b.centre_x = columns - 1 - 2 * column;
+                }
+            }
             m_branches.push_back(b);
         }
     });

@@ -121,7 +121,9 @@ class Chart {
     /// takes the projection's default (default_fov). `d`: the numbers of projections that have some. `vertical`: only of images that
     /// are one piece, and a horizon only of those without a lens. `padding`: how many pixels within each edge of the image, or of
     /// every face, the field of view ends, less than a quarter of its sides; only of layouts of separate faces and of fisheyes
-    /// without a lens. `prefix` is put before "fov", "vfov", "size", "d", "e", "lens" and "padding" in errors, and "src" before "size"
+    /// without a lens. A negative one is so many pixels around each row of faces alone, of those that follow each other there (eac).
+    /// The columns of such faces need not be whole pixels wide, unless each has a padding: edges between them are then within pixels.
+    /// `prefix` is put before "fov", "vfov", "size", "d", "e", "lens" and "padding" in errors, and "src" before "size"
     /// is "source ". Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", const Distance& d = {},
@@ -141,7 +143,8 @@ class Chart {
     /// The numbers of projections that have some.
     const Distance& distance() const { return m_setting.distance; }
     PixelSpacing spacing() const { return m_spacing; }
-    /// How many pixels within each edge of the image, or of every face, the field of view ends; there the plane goes on.
+    /// How many pixels within each edge of the image, or of every face, the field of view ends; there the plane goes on. Negative:
+    /// around rows of faces alone.
     double padding() const { return m_padding; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
     /// The lens; null where there is none, as in most pictures.
@@ -250,6 +253,8 @@ class Chart {
     void check_numbers(const std::string& prefix) const;
     void check_vertical(const std::string& prefix, const LensModel& lens) const;
     void check_padding(const std::string& prefix, const LensModel& lens) const;
+    /// Do faces follow each other in rows, edge to edge, so that these edges may be within pixels?
+    bool has_joined_rows() const;
     void set_scale(const std::string& prefix, const LensModel& lens);
     void set_branches();
 

@@ -41,10 +41,12 @@ Texel across_face_edge(const Chart& chart, double x, double y, int piece, const 
     const Ray<double> ray = chart.ray((x + 0.5) * kx, (y + 0.5) * ky, piece);
     const int other = chart.piece_of(ray);
     const Point<double> p = chart.point(ray, other);
-    // Where no face has the ray there is nothing. To a millionth of a pixel, which is more than rounding moves it.
+    // Where no face has the ray there is nothing, which is so where the pieces do not see all. To a millionth of a pixel, which is
+    // more than rounding moves it.
     const Box& own = chart.pieces()[static_cast<std::size_t>(other)].box;
     const auto has = [](double at, int first, int end) { return at >= first - 1e-6 && at <= end + 1e-6; };
-    if (!has(p.x, own.x0, own.x1) || !has(p.y, own.y0, own.y1)) return {0, 0, true};
+    const bool is_seen = chart.pieces_see_all() || (has(p.x, own.x0, own.x1) && has(p.y, own.y0, own.y1));
+    if (!is_seen) return {0, 0, true};
     const Box face = border.interior(other, level);
     const auto inside = [](double at, int first, int end) {
         return static_cast<int>(std::clamp(std::floor(at), double(first), double(end - 1)));

@@ -219,7 +219,7 @@ PlanOptions link_options(WarpScheme scheme, double tol) {
 std::shared_ptr<const MapLink> window_link(std::shared_ptr<const WindowSource> source, WarpScheme scheme,
                                            double tol) {
     const WindowMap map(std::move(source), tol);
-    if (scheme != WarpScheme::exact && tol > 0 && !map.is_smooth()) return nullptr;
+    if (scheme != WarpScheme::exact && !map.is_smooth()) return nullptr;
     return std::make_shared<const LinkOf<WindowMap>>(map, link_options(scheme, tol));
 }
 

@@ -547,7 +547,7 @@ std::shared_ptr<const MapLink> ScatteredPlan::link() const {
     const auto plan = std::static_pointer_cast<const ScatteredPlan>(weak_from_this().lock());
     if (!plan || !joins(m_scheme)) return nullptr;
     const TriangleMap map(plan);
-    if (m_scheme != WarpScheme::exact && m_tol > 0 && !map.has_large_triangles()) return nullptr;
+    if (m_scheme != WarpScheme::exact && !map.has_large_triangles()) return nullptr;
     return std::make_shared<const LinkOf<TriangleMap>>(map, link_options(m_scheme, m_tol));
 }
 

@@ -20,6 +20,8 @@ constexpr int side_of(int step) {
 constexpr int kFitted = 8;
 // What cubics may be off where all pixels are exact, and cubics but tell where the map leads.
 constexpr double kNearby = 1.0 / 512;
+// What cubics may be off where it is asked whether a map is smooth, whatever the tolerance: what they may be of the default one.
+constexpr double kSmooth = 0.01 * WindowCubic::kShare;
 
 WindowFit make_fit(int side) {
     std::vector<Point<int>> pixels;
@@ -147,12 +149,13 @@ WindowMap::WindowMap(std::shared_ptr<const WindowSource> source, double tol)
 
 bool WindowMap::is_smooth(int least_step) const {
     constexpr int kTried = 8;
+    const Windows windows(*m_source, kSmooth);
     const Size size = target_size();
     int missing = 0;
     for (int j = 0; j < kTried; ++j)
         for (int i = 0; i < kTried; ++i) {
             const double x = (i + 0.5) * size.width / kTried, y = (j + 0.5) * size.height / kTried;
-            missing += !m_windows->serving(x, y, least_step);
+            missing += !windows.serving(x, y, least_step);
             if (2 * missing > kTried * kTried) return false;
         }
     return true;

@@ -415,6 +415,8 @@ std::vector<std::vector<const Drawing*>> partners(const std::vector<Layer>& laye
         const Drawing& drawing = first.drawings[i];
         if (!drawing.label.empty() && !labels.emplace(drawing.label, i).second)
             fail(file, in_layer(drawing, first), "its label is there twice: must be there once in a layer");
+        // Labels are enough.
+        if (drawing.id.empty()) continue;
         if (!ids.emplace(without_layer(drawing.id, first.label), i).second)
             fail(file, in_layer(drawing, first), "its id is not the only one");
         ids.emplace(drawing.id, i);

@@ -113,8 +113,10 @@ ParameterTable look_rows() {
                "values of the channels behind the surface and where its picture's alpha lets through; by "
                "default nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
         file("back",
-             "the picture on the far side of the surface, as large as src and with as many channels; seen "
-             "from there it is the right way round; by default src, as it shows through"),
+             "the picture on the far side of the surface, of any size, stretched over it as src is, with as "
+             "many "
+             "channels as that, of which the same is alpha; seen from there it is the right way round; by "
+             "default src, as it shows through"),
         image("backdrop",
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),
@@ -228,24 +230,22 @@ LinkedFiles linked_back(const ParameterValues&, const SideFiles& files, const Si
     return {{kBack, back->second.name, true}};
 }
 
-/// It goes with the picture on this side.
-void check_back(const OperationInput& input) {
+/// The size of the picture on the far side, which goes with the one on this side; none where there is none.
+Size read_back(const OperationInput& input) {
     const auto back = input.files.find("back");
-    if (back == input.files.end()) return;
+    if (back == input.files.end()) return {};
     const SourceImage& front = input.sources[0];
     const std::unique_ptr<SideImage> image = input.reader.image("back", back->second.name);
     const Box shown = image->display();
-    const auto text = [](int width, int height, int channels) {
-        return std::to_string(width) + "x" + std::to_string(height) + " with " + std::to_string(channels) +
-               " channels";
+    const auto text = [](int channels, int alpha) {
+        return std::to_string(channels) + " channels, " +
+               (alpha >= 0 ? "number " + std::to_string(alpha) + " alpha" : "none of them alpha");
     };
-    const bool is_alike = shown.width() == front.facts.width && shown.height() == front.facts.height &&
-                          image->channels() == front.channels && image->alpha() == front.alpha;
-    if (!is_alike)
+    if (image->channels() != front.channels || image->alpha() != front.alpha)
         throw Error("back", printable(back->second.name),
-                    "is " + text(shown.width(), shown.height(), image->channels()) + ": must be as src, " +
-                        text(front.facts.width, front.facts.height, front.channels) +
-                        ", and alpha the same of them");
+                    "has " + text(image->channels(), image->alpha()) + ": must be as src, " +
+                        text(front.channels, front.alpha));
+    return {shown.width(), shown.height()};
 }
 
 /// What is asked for, at any frame.
@@ -261,7 +261,7 @@ class DrapeRequest {
           m_backdrop_alpha(input.sources.size() > 1 ? input.sources[1].alpha : -1),
           m_surfaces(std::make_shared<DrapeSurfaces>(input, aspect())) {
         check_backdrop(input.sources, input.values);
-        check_back(input);
+        m_back = read_back(input);
         // What does not depend on the size of the picture is checked now.
         for (int i = 0; i < frames(); ++i) check(number_of(i));
     }
@@ -281,6 +281,7 @@ class DrapeRequest {
         data(values, options.filter);
         options.alpha = m_alpha;
         options.backdrop_alpha = m_backdrop_alpha;
+        options.back = m_back;
         options.overscan = rows::overscan_of(values, target(values));
         return options;
     }
@@ -356,6 +357,7 @@ class DrapeRequest {
     Sequence m_sequence;
     Size m_source;
     bool m_has_backdrop, m_has_back;
+    Size m_back;
     SourceFacts m_facts;
     int m_alpha, m_backdrop_alpha;
     std::shared_ptr<const DrapeSurfaces> m_surfaces;

@@ -92,8 +92,10 @@ FlatRequest flat_request(const ParameterValues& values, const SourceFacts& sourc
 }
 
 SourceFaces faces_of(const Chart& source) {
-    const Box& face = source.pieces()[0].box;
-    return {source.width() / face.width(), source.height() / face.height()};
+    const FaceGrid grid = faces_of(source.projection());
+    // Edges within pixels part no texels: in their rows faces go on in each other.
+    const bool parts_columns = grid.columns > 0 && source.width() % grid.columns == 0;
+    return {parts_columns ? grid.columns : 1, std::max(1, grid.rows)};
 }
 
 std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const MakeFlatMap& make_map) {

@@ -61,6 +61,31 @@ std::unique_ptr<const Pictures> pictures_of(const FlatRequest& request, const Ma
     });
 }
 
+/// Does a formula read a name?
+bool reads(std::string_view formula, std::string_view name) {
+    const auto is_of_name = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    };
+    for (std::size_t at = 0; (at = formula.find(name, at)) != formula.npos; at += name.size()) {
+        const std::size_t end = at + name.size();
+        const bool is_begun = at > 0 && is_of_name(formula[at - 1]),
+                   goes_on = end < formula.size() && is_of_name(formula[end]);
+        if (!is_begun && !goes_on) return true;
+    }
+    return false;
+}
+
+/// Refuses a frame that nothing is made of.
+void check_frame(const ParameterValues& values, const FormulaText& text) {
+    if (!values.given("frame")) return;
+    bool is_read = reads(text.u, "frame") || reads(text.v, "frame") || reads(text.let, "frame");
+    for (const auto& [name, formula] : text.definitions) is_read = is_read || reads(formula, "frame");
+    if (!is_read)
+        throw Error(
+            "frame", printable(values.text("frame")),
+            "must be given only where a formula reads frame; of a film as src, subimage chooses a frame");
+}
+
 std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height}, target = rows::size_of(values, source);
     FormulaText text;
@@ -68,6 +93,7 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     if (values.given("v")) text.v = values.text("v");
     if (values.given("let")) text.let = values.text("let");
     text.definitions = values.definitions();
+    check_frame(values, text);
     const bool pushes = values.text("direction") == "push";
     if (pushes && values.text("scheme") == "direct")
         throw Error("scheme", "direct", "is of direction=pull: must be auto, exact, blocks or residual");

@@ -169,11 +169,13 @@ ParameterTable make_pano_table() {
         text(
             "srcpadding",
             "of a source of faces, or a fisheye: how many pixels within each edge of every face its field of "
-            "view ends, less than a quarter of its sides; there the face's own plane goes on; by default "
-            "what the image says of itself, else 0"),
+            "view ends, less than a quarter of its sides; there the face's own plane goes on; of eac, rows:2 "
+            "is so many around each row of faces alone, as ffmpeg's v360 has them; by default what the image "
+            "says of itself, else 0"),
         text("padding",
              "of a picture of faces, or a fisheye: as many pixels within each edge of every face show what "
-             "goes on beyond its field of view, in the face's own plane; size counts them; by default 0"),
+             "goes on beyond its field of view, in the face's own plane; size counts them; of eac, rows:2 is "
+             "so many around each row of faces alone; by default 0"),
         text("srclens",
              "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
@@ -287,16 +289,22 @@ bool is_given(const ParameterValues& values, const std::string& name) {
     return values.knows(name) && values.given(name);
 }
 
-/// The pixels that srcpadding or padding says; none where the table has no such row or it is not given. Throws Error.
+/// The pixels that srcpadding or padding says, as Chart has them (negative around rows); none where the table has no such row or it is
+/// not given. Throws Error.
 std::optional<int> padding_of(const ParameterValues& values, const std::string& name) {
     if (!is_given(values, name)) return {};
     const std::string& text = values.text(name);
+    const std::string rows = "rows:";
+    const bool around_rows = text.compare(0, rows.size(), rows) == 0;
+    const std::string pixels = text.substr(around_rows ? rows.size() : 0);
     const bool is_number =
-        !text.empty() && text.size() < 7 && text.find_first_not_of("0123456789") == text.npos;
+        !pixels.empty() && pixels.size() < 7 && pixels.find_first_not_of("0123456789") == pixels.npos;
     if (!is_number)
-        throw Error(name, printable(text),
-                    "must be an integer from 0 to less than a quarter of the sides of a face, in pixels");
-    return std::stoi(text);
+        throw Error(
+            name, printable(text),
+            "must be an integer from 0 to less than a quarter of the sides of a face, in pixels, or of "
+            "eac rows: and that, around its rows of faces");
+    return std::stoi(pixels) * (around_rows ? -1 : 1);
 }
 
 /// The horizontal field of view that is asked for, in degrees or by a focal length; none where it is not. `of`: "src" or nothing.
@@ -529,9 +537,16 @@ Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     if (!values.given("size")) {
         const FaceGrid grid = faces_of(to);
         size = default_size(to, field, d, lens.magnification(), source);
-        size = {size.width + 2 * padding * std::max(1, grid.columns),
-                size.height + 2 * padding * std::max(1, grid.rows)};
+        const int margins = 2 * std::abs(padding);
+        size = {size.width + margins * (padding < 0 ? 1 : std::max(1, grid.columns)),
+                size.height + margins * std::max(1, grid.rows)};
     } else if (size.height < 0) {
+        // Near where a projection ends the height that belongs to a width has no end either.
+        if (const double height = size.width * field.aspect; !(height < kMaxSide + 0.5))
+            throw Error("size", std::to_string(size.width),
+                        "makes a picture " + shortest(std::round(height)) + " pixels high, as " +
+                            (values.given("vfov") ? "vfov" : "fov") + " says: must be at most " +
+                            std::to_string(kMaxSide) + ", or NxM");
         size = natural_size(field, size.width);
     }
     return chart(size.width, size.height, lens, padding);

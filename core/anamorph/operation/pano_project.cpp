@@ -109,15 +109,24 @@ class TowardPlane {
 };
 
 ProjectImage drawn(const HuginImage& image) {
-    const bool has_lens =
-        std::any_of(image.lens.begin(), image.lens.end(), [](double value) { return value != 0; });
-    const LensModel lens =
-        has_lens ? LensModel{LensModel::Kind::ptlens, {image.lens.begin(), image.lens.end()}} : LensModel{};
-    const Chart chart(image.projection, image.size.width, image.size.height, image.fov, PixelSpacing::edges,
-                      "", 1, lens);
-    SourceMask mask = mask_of(image);
+    const auto is_given = [](double value) { return value != 0; };
+    const auto shift = image.lens.end() - 2;  // d and e
+    LensModel lens;
+    VerticalField vertical;
     Orientation held{image.yaw, image.pitch, image.roll};
     held.transfer = image.transfer;
+    if (rows_turn(image.projection) && std::none_of(image.lens.begin(), shift, is_given)) {
+        // Without a lens a picture whose columns are azimuths is shifted by looking elsewhere, and having its horizon elsewhere.
+        if (shift[1] != 0) vertical.horizon = 0.5 * image.size.height + shift[1];
+        held.ahead = -shift[0] * image.fov / image.size.width;
+        if (held.ahead != 0 && image.transfer)
+            throw Error("d" + brief(shift[0]) + ": must be 0 with TrX, TrY or TrZ");
+    } else if (std::any_of(image.lens.begin(), image.lens.end(), is_given)) {
+        lens = {LensModel::Kind::ptlens, {image.lens.begin(), image.lens.end()}};
+    }
+    const Chart chart(image.projection, image.size.width, image.size.height, image.fov, PixelSpacing::edges,
+                      "", 1, lens, vertical);
+    SourceMask mask = mask_of(image);
     bool sees_no_plane = false;
     if (image.transfer) {
         const TowardPlane toward(chart, image);
@@ -396,6 +405,7 @@ TargetValues with_target(const ParameterValues& given, const ProjectRequest& req
     target.values.set("to", std::string(name_of(panorama.projection)));
     const bool has_field = is_given({"fov", "vfov", "focal"});
     if (!has_field) target.values.set("fov", panorama.fov);
+    if (panorama.d && !given.given("d")) target.values.set("d", *panorama.d);
     if (!given.given("size")) target.values.set("size", panorama.size);
     if (given.given("size") && given.extent("size").height < 0) {
         const double width = given.extent("size").width;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/operation/panorama_attributes.h"
 
+#include <cmath>
 #include <utility>
 
 namespace anamorph {
@@ -12,7 +13,9 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     const int numbers = numbers_of(picture.projection());
     if (numbers > 0) projection += " d=" + shortest(picture.distance().d);
     if (numbers > 1) projection += " e=" + shortest(picture.distance().e);
-    if (picture.padding() != 0) projection += " padding=" + shortest(picture.padding());
+    if (picture.padding() != 0)
+        projection +=
+            (picture.padding() < 0 ? " padding=rows:" : " padding=") + shortest(std::fabs(picture.padding()));
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;

@@ -124,7 +124,8 @@ constexpr Format kPanoramaFormats[] = {
     {0, Projection::rectilinear}, {1, Projection::cylindrical},   {2, Projection::equirectangular},
     {3, Projection::fisheye},     {4, Projection::stereographic}, {5, Projection::mercator},
     {7, Projection::sinusoidal},  {9, Projection::equisolid},     {14, Projection::orthographic},
-    {15, Projection::equisolid},  {21, Projection::hammer}};
+    {15, Projection::equisolid},  {19, Projection::pannini},      {21, Projection::hammer}};
+constexpr int kGeneralPannini = 19;
 
 template <std::size_t N>
 const Format* find_format(const Format (&formats)[N], int number) {
@@ -345,6 +346,31 @@ class Images {
 
 // --- The panorama ------------------------------------------------------------------------------------------
 
+/// The parameters of the general Pannini projection, P"compression tops bottoms", and the distance that a compression is, from 0 (0) by
+/// 100 (1) to 150 (endless): as PanoTools computes it, a thousandth of a thousandth beside that. What squeezes its upper and lower half
+/// is no Pannini's. Writes what is refused.
+void read_pannini(const Row& row, HuginPanorama& panorama) {
+    double values[] = {100, 0, 0};
+    if (const auto found = row.values.find("P"); found != row.values.end()) {
+        std::string_view text = text_file::trimmed(found->second);
+        for (double& value : values) {
+            const std::string_view field = text.substr(0, text.find_first_of(" \t"));
+            if (field.empty()) break;
+            value = checked_number("P", field, -kMostNumber, kMostNumber);
+            text = text_file::trimmed(text.substr(field.size()));
+        }
+        if (!text.empty()) throw Error(written("P", found->second) + ": must be up to three numbers");
+    }
+    const double times = (150 - values[0]) / 50 + 0.0001;
+    panorama.d = std::max(1.5 / times - 1.5 / 3.0001, 0.0);
+    const bool is_known = values[0] >= 0 && values[0] <= 150 && panorama.d <= Chart::kMostDistance;
+    if (!is_known || values[1] != 0 || values[2] != 0)
+        panorama.refused = row.label + ": P" + brief(values[0]) + " " + brief(values[1]) + " " +
+                           brief(values[2]) +
+                           ": must be a compression from 0 to 149.9, and 0 for what squeezes its upper and "
+                           "lower half";
+}
+
 HuginPanorama panorama_of(const Row& row) {
     const auto value = [&](std::string_view name) { return value_of_row(row, name); };
     HuginPanorama panorama;
@@ -362,6 +388,7 @@ HuginPanorama panorama_of(const Row& row) {
         panorama.projection = known->projection;
     else
         panorama.refused = refused_format(kPanoramaFormats, row, format);
+    if (format == kGeneralPannini) read_pannini(row, panorama);
     return panorama;
 }
 

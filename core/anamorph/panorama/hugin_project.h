@@ -6,7 +6,7 @@
 //   i w3000 h2000 f0 v=0 a=0 b=0 c=0 d=0 e=0 y50 p1 r0.3 Eev12.5 S20,2980,10,1990 n"second.jpg"
 //   k i0 t0 p"10 20 300 20 300 400"
 //
-// A value =0 is that of image 0. Of the panorama (p) are read f, w, h, v and S; of images (i) w, h, f, v, a to e, g, t, y, p, r, TrX
+// A value =0 is that of image 0. Of the panorama (p) are read f, P (of f19), w, h, v and S; of images (i) w, h, f, v, a to e, g, t, y, p, r, TrX
 // to TrZ, Tpy, Tpp, S and n; of masks (k) those that cut a part of their own image out (t0). Control points, what is to be
 // optimized, output formats and comments mean nothing here. What else an image has, such as tilt (TiX), has to be 0. Exposure, white
 // balance, vignetting and response curves are not geometry: they are named, and not applied.
@@ -51,6 +51,7 @@ struct HuginPanorama {
     Projection projection = Projection::equirectangular;
     Size size;
     double fov = 360;
+    std::optional<double> d = {};  ///< of pannini, its distance
     std::optional<Box> crop = {};  ///< the part of `size` that is drawn, inside of it
     std::string refused = {};      ///< as HuginImage has it
 

@@ -265,16 +265,23 @@ Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_
     return Cover::inside;
 }
 
+template <class T>
+T Panorama::seen_by_any(const Ray<T>& ray) const {
+    T most = seen(ray, 0);
+    for (int i = 1; i < static_cast<int>(m_source.pieces().size()); ++i) most = max(most, seen(ray, i));
+    return most;
+}
+
 double Panorama::end(double x, double y, int piece) const {
     const double inside = m_target.inside(x, y, piece);
-    if (!(inside > 0) || m_source.pieces().size() > 1) return inside;
-    return std::min(inside, m_source.sees(source_ray(x, y, piece)));
+    if (!(inside > 0) || m_source.pieces_see_all()) return inside;
+    return std::min(inside, seen_by_any(source_ray(x, y, piece)));
 }
 
 Interval Panorama::end(const Interval& x, const Interval& y, int piece) const {
     const Interval inside = m_target.inside(x, y, piece);
-    if (!(inside.lo > 0) || m_source.pieces().size() > 1) return inside;
-    const Interval sees = m_source.sees(source_ray(x, y, piece));
+    if (!(inside.lo > 0) || m_source.pieces_see_all()) return inside;
+    const Interval sees = seen_by_any(source_ray(x, y, piece));
     return {std::min(inside.lo, sees.lo), std::min(inside.hi, sees.hi)};
 }
 

@@ -115,8 +115,8 @@ class Panorama {
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
 
-    /// A number that is positive where there is a source point, and changes sign where those end: at the rim of either picture. Pieces of
-    /// sources that have several end by none.
+    /// A number that is positive where there is a source point, and changes sign where those end: at the rim of either picture, of a
+    /// source of several pieces where the last one of them ends.
     double end(double x, double y, int piece) const;
     Interval end(const Interval& x, const Interval& y, int piece) const;  ///< Encloses it over a box.
 
@@ -164,6 +164,9 @@ class Panorama {
         if (m_source.pieces().size() == 1) return m_source.sees(r);
         return m_source.sees(transform(glm::transpose(m_source.branch(piece).axes), r), piece);
     }
+    /// Positive where any piece sees the ray.
+    template <class T>
+    T seen_by_any(const Ray<T>& ray) const;
     /// Is it certain that no piece sees any of these local rays, given that the piece that they are local to does not?
     bool is_unseen(const Ray<Interval>& ray, const Local& local) const;
     /// Are all these local rays seen, except that some may lie beyond the end of the source's lens?

@@ -18,8 +18,11 @@
 namespace anamorph::surface {
 namespace {
 
+/// `blocks`: the paper's blocks, where they have been made.
 std::shared_ptr<const DrapeMap> map_of(SharedTree& surface, const Camera& camera, const Size& picture,
-                                       const DrapeOptions& options) {
+                                       const DrapeOptions& options,
+                                       const std::shared_ptr<const OkaRaster>& blocks = nullptr) {
+    if (blocks) return std::make_shared<DrapeMap>(blocks, camera, picture, options.tol, surface.pool);
     if (options.scheme == DrapeScheme::oka || options.scheme == DrapeScheme::oka_z)
         return std::make_shared<DrapeMap>(
             std::make_shared<OkaRaster>(
@@ -149,6 +152,10 @@ Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Si
     m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
     m_picture.filter = options.filter;
     m_picture.output = options.output;
+    const bool is_other = !(options.back == Size{}) && !(options.back == picture);
+    m_back_map = is_other ? map_of(*m_surface, camera, options.back, options, m_map->oka_blocks()) : m_map;
+    const Chart flat_back(Projection::rectilinear, m_back_map->picture().width, m_back_map->picture().height);
+    m_back_maps = {{m_back_map, {{Border(flat_back, options.wrap)}}}};
 }
 
 Reached Drape::reached(const ParallelFor& parallel_for) const {
@@ -361,7 +368,10 @@ class Drape::EdgePainter {
           m_sampler(layers.source, border()),
           m_part(static_cast<std::size_t>(layers.source.channels()) + 16),
           m_under(m_part) {
-        if (layers.back) m_back_sampler.emplace(*layers.back, border());
+        if (layers.back) {
+            m_back_chooser.emplace(*layers.back);
+            m_back_sampler.emplace(*layers.back, back_border());
+        }
         if (layers.has_backdrop(drape.m_options))
             m_backdrop = layers.make_backdrop(drape.m_options, {drape.m_map->width(), drape.m_map->height()});
     }
@@ -387,6 +397,7 @@ class Drape::EdgePainter {
 
   private:
     const Border& border() const { return m_drape.m_picture.maps.front().layers.front().border; }
+    const Border& back_border() const { return m_drape.m_back_maps.front().layers.front().border; }
     /// What a part shows, multiplied with its alpha.
     bool read(const EdgePart& part) {
         const int channels = m_layers.source.channels();
@@ -394,12 +405,13 @@ class Drape::EdgePainter {
         const DrapeMap& map = *m_drape.m_map;
         Spot spot{&map.facets().facets[part.facet], part.u, part.v};
         m_drape.weigh(spot, part.x, part.y);
-        const Jacobian jacobian = map.jacobian_of(*spot.facet, part.x, part.y);
-        const Size& size = map.picture();
         const bool of_back = m_back_sampler && m_drape.shows_back(*spot.facet, part.x, part.y);
+        const DrapeMap& of_side = of_back ? *m_drape.m_back_map : map;
+        const Jacobian jacobian = of_side.jacobian_of(*spot.facet, part.x, part.y);
+        const Size& size = of_side.picture();
         PointSampler& sampler = of_back ? *m_back_sampler : m_sampler;
-        const bool ok = sampler.sample(m_drape.m_options.filter, m_chooser, jacobian, 0, part.u * size.width,
-                                       part.v * size.height, m_part.data());
+        const bool ok = sampler.sample(m_drape.m_options.filter, of_back ? *m_back_chooser : m_chooser,
+                                       jacobian, 0, part.u * size.width, part.v * size.height, m_part.data());
         if (m_drape.m_options.lighting.shading == DrapeShading::none) return ok;
         if (alpha.straight()) unassociate_alpha(m_part.data(), channels, alpha.channel);
         m_drape.light_pixel(spot, m_part.data(), channels, alpha);
@@ -411,6 +423,7 @@ class Drape::EdgePainter {
     const Layers& m_layers;
     FootprintChooser m_chooser;
     PointSampler m_sampler;
+    std::optional<FootprintChooser> m_back_chooser;
     std::optional<PointSampler> m_back_sampler;
     std::unique_ptr<Backdrop> m_backdrop;
     std::vector<float> m_part, m_under;
@@ -477,9 +490,9 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
     if (!source) return m_picture.draw(source, box, view, parallel_for);
-    if (back && (back->channels() != source->channels() || !(back->size(0) == source->size(0)) ||
+    if (back && (back->channels() != source->channels() || !(back->size(0) == m_back_map->picture()) ||
                  back->unassociated_alpha() != source->unassociated_alpha()))
-        throw Error("the picture on the far side has another size or other channels: must be as src");
+        throw Error("the picture on the far side has another size than was said, or other channels than src");
     std::optional<MirroredSource> mirrored;
     if (back) back = &mirrored.emplace(*back);
     // Sources that keep no sums are lent a place for them.
@@ -496,6 +509,7 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
             if (!finish(rows, layers)) ok = false;
         };
     if (!picture.draw(source, box, view, parallel_for)) return false;
+    picture.maps = m_back_maps;
     if (layers.back && !draw_back(picture, *layers.back, box, view, parallel_for)) return false;
     const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
     return ok && (!averages(m_options.filter) || draw_edges(layers, inside, Canvas(view, box), parallel_for));

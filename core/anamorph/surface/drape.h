@@ -51,6 +51,7 @@ struct DrapeOptions {
     int alpha = -1;                 ///< the channel of the picture's alpha, multiplied in or not, or -1
     int backdrop_alpha = -1;        ///< the channel of alpha of the picture behind, or -1
     Size overscan = {};  ///< pixels on either side that the picture behind does not cover but goes on in
+    Size back = {};      ///< the size of the picture on the far side; by default that of the other
 };
 
 /// A surface's patches, and room to draw in, which views of it share.
@@ -89,8 +90,8 @@ class Drape {
     static constexpr int kMostCounted = 1 << 24;
 
     /// Draws the pixels of `box`; sources are read for colour only. `backdrop`: a picture that fills the screen behind the
-    /// surface and over the background. `back`: the picture on the surface's far side, with the size and the channels of the other;
-    /// seen from there it is the right way round. False when one could not be read.
+    /// surface and over the background. `back`: the picture on the surface's far side, with the channels of the other and the size
+    /// DrapeOptions::back; seen from there it is the right way round. False when one could not be read.
     bool draw(const Source* source, const Box& box, const ImageView& view, const ParallelFor& parallel_for,
               const Source* backdrop = nullptr, const Source* back = nullptr) const;
 
@@ -122,9 +123,11 @@ class Drape {
 
     std::shared_ptr<SharedTree> m_surface;
     DrapeOptions m_options;
-    std::shared_ptr<const DrapeMap> m_map;
+    std::shared_ptr<const DrapeMap> m_map,
+        m_back_map;               ///< the same surface, with the points of either picture
     std::vector<LitPoint> m_lit;  ///< corners, where they are lit
     Picture m_picture;
+    std::vector<Picture::Map> m_back_maps;
 };
 
 }  // namespace anamorph::surface

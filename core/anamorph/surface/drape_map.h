@@ -70,6 +70,8 @@ class DrapeMap final : public BlockMap {
     const Facet& part_of(const Facet& facet, double u, double v) const;
     const Camera& camera() const { return m_camera; }
     const Size& picture() const { return m_picture; }
+    /// The paper's blocks; null where there are none.
+    const std::shared_ptr<const OkaRaster>& oka_blocks() const { return m_blocks; }
     /// An upper bound of the bounds of all blocks, in pixels of the screen.
     double max_error(const ParallelFor& parallel_for = serial_for) const;
 

@@ -164,11 +164,55 @@ void sinc_cos(const T& t_squared, T& sinc, T& cos) {
     sinc = select(is_zero(t), T(1), T(sin / t));
 }
 
+/// The same of what rounding does to them. Of zero, and what is next to it, by Lipschitz constants in s = t^2, which the quotient does
+/// not have: d(sin t / t) / ds = -(sin t - t cos t) / (2 t^3), at most 1/6, as sin t - t cos t is the integral of u sin u, at most that
+/// of u^2; d(cos t) / ds = -sin t / (2 t), at most 1/2. The root is off by 1 unit of t, so 2 of s and their square; a sine and its
+/// quotient by the same root by libm's error and 1 unit more.
+template <class Real>
+void sinc_cos(const Rounded<Real>& t_squared, Rounded<Real>& sinc, Rounded<Real>& cos) {
+    using R = Rounded<Real>;
+    const R t = sqrt(t_squared);
+    R sin;
+    sin_cos(t, sin, cos);
+    sinc = select(is_zero(t), R(1), R(sin / t));
+    const double most = t_squared.range.hi;
+    if (sinc.error < HUGE_VAL || t_squared.is_jet() || !(most + t_squared.error <= 1)) return;
+    const double off = t_squared.error + 3 * R::kUnit * (most + t_squared.error);
+    const Interval s(0, std::max(most, 0.0));
+    sinc = R(Interval(1) - s * Interval(0, 1.0 / 6 + 0x1p-50), 0,
+             (off / 6 + R::kLibm + 2 * R::kUnit) * rounded_detail::kUp);
+    cos = R(Interval(1) - s * Interval(0, 0.5), 0, (off / 2 + R::kLibm) * rounded_detail::kUp);
+}
+
 /// The angle of (across, ahead), counted from `along`.
 template <class T>
 T tilt(const T& across, const T& ahead, const Heading& along) {
     const auto cos = measured<T>(along.cos, along.error), sin = measured<T>(along.sin, along.error);
     return atan2(T(across * cos - ahead * sin), T(ahead * cos + across * sin)) + along.angle;
+}
+
+/// The angle of (across, ahead) over `across`; on the axis, where that is 0, 1 / ahead.
+template <class T, class Condition>
+T tilt_over_across(const Condition& on_axis, const T& across, const T& ahead, const Heading& along) {
+    return select(on_axis, T(T(1) / ahead), T(tilt(across, ahead, along) / across));
+}
+/// The same of what rounding does to it. Next to the axis ahead, with q = across / ahead, it is A(q) / ahead with A(q) = atan(q) / q,
+/// and A'(q) = -(atan q - q / (1 + q^2)) / q^2. The numerator is the integral of 2 u^2 / (1 + u^2)^2, which is at most 2 u^2 and at most
+/// 1/2: |A'| is at most 2 q / 3 and at most 1 / (2 q), so never above 0.58, the root of 1/3. What is computed is A of the computed
+/// numbers, but for libm and a quotient; A is from 1 - q^2 / 3 to 1.
+template <class Real, class Condition>
+Rounded<Real> tilt_over_across(const Condition& on_axis, const Rounded<Real>& across,
+                               const Rounded<Real>& ahead, const Heading& along) {
+    using R = Rounded<Real>;
+    const R plain = select(on_axis, R(R(1) / ahead), R(tilt(across, ahead, along) / across));
+    const bool is_counted_from_ahead = along.sin == 0 && along.cos > 0 && along.angle == 0;
+    if (plain.error < HUGE_VAL || across.is_jet() || ahead.is_jet() || !is_counted_from_ahead) return plain;
+    const R q = across / ahead;
+    if (!(lower_end(ahead) > 0 && magnitude(q.range) + q.error <= 1)) return plain;
+    const double far = magnitude(q.range);
+    return R(Interval(1 - far * far / 3 * rounded_detail::kUp, 1), 0,
+             0.58 * q.error + R::kLibm + 2 * R::kUnit) /
+           ahead;
 }
 
 /// A ray of the same direction, made longer where the squares of x and z would underflow.

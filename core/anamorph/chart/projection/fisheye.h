@@ -26,7 +26,7 @@ struct Fisheye : AxisFamily {
     static Point<T> point(const Ray<T>& r, const Setting& s) {
         const T rho = length(r.x, r.y);
         const auto on_axis = is_zero(rho);
-        const T k = select(on_axis, T(T(1) / r.z), T(tilt(rho, r.z, s.along) / rho));
+        const T k = tilt_over_across(on_axis, rho, r.z, s.along);
         const auto cos = measured<T>(s.around.cos, s.around.error),
                    sin = measured<T>(s.around.sin, s.around.error);
         const auto behind = both(on_axis, is_negative(r.z));
