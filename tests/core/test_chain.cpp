@@ -401,13 +401,13 @@ std::vector<ChainCase> stmap_cases() {
          0.8},
         {"rough ST-map of lens, exactly",
          [=](Settings s) {
-             s.tol = 0;
+             s.tol = 0, s.scheme = Scheme::exact;
              return std::vector{stmap_link(middle, plate, {0.4}, s), lens(s)};
          },
          1.1},
         {"lens of rough ST-map, exactly",
          [=](Settings s) {
-             s.tol = 0;
+             s.tol = 0, s.scheme = Scheme::exact;
              return std::vector{lens(s), stmap_link(plate, {300, 200}, {0.4}, s)};
          },
          1.1},

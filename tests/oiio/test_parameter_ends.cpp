@@ -151,6 +151,8 @@ class ParameterEnds : public InFolder {
                        "figure f 1 e\nellipsoid e 200 300 100\nrepeat 0 1 texture e city.exr 0 0\nstop\n");
             add("script", "dressed.nudes");
         }
+        if (operation.name == "figure" && (key == "outlines" || key == "outline_tol"))
+            add("style", "outline");
         if (operation.name == "mosaic") {
             if (key == "circles" || key == "circle") {
                 sources[0] = "tall.exr";

@@ -164,10 +164,22 @@ void sinc_cos(const T& t_squared, T& sinc, T& cos) {
     sinc = select(is_zero(t), T(1), T(sin / t));
 }
 
+/// Is a number off by some roundings, as what is far from an axis is?
+template <class Real>
+bool is_ordinary(const Rounded<Real>& number) {
+    return number.error < 1024 * Rounded<Real>::kUnit;
+}
+
+/// Is a bound so much smaller than another, which may be none, that it takes its place?
+inline bool is_far_better(double bound, double other) {
+    return !(other < 1024 * bound);
+}
+
 /// The same of what rounding does to them. Of zero, and what is next to it, by Lipschitz constants in s = t^2, which the quotient does
 /// not have: d(sin t / t) / ds = -(sin t - t cos t) / (2 t^3), at most 1/6, as sin t - t cos t is the integral of u sin u, at most that
 /// of u^2; d(cos t) / ds = -sin t / (2 t), at most 1/2. The root is off by 1 unit of t, so 2 of s and their square; a sine and its
-/// quotient by the same root by libm's error and 1 unit more.
+/// quotient by the same root by libm's error and 1 unit more. They are taken where they are far better: elsewhere the bounds of a
+/// quotient do, and pictures are divided as ever.
 template <class Real>
 void sinc_cos(const Rounded<Real>& t_squared, Rounded<Real>& sinc, Rounded<Real>& cos) {
     using R = Rounded<Real>;
@@ -176,11 +188,12 @@ void sinc_cos(const Rounded<Real>& t_squared, Rounded<Real>& sinc, Rounded<Real>
     sin_cos(t, sin, cos);
     sinc = select(is_zero(t), R(1), R(sin / t));
     const double most = t_squared.range.hi;
-    if (sinc.error < HUGE_VAL || t_squared.is_jet() || !(most + t_squared.error <= 1)) return;
+    if (is_ordinary(sinc) || t_squared.is_jet() || !(most + t_squared.error <= 1)) return;
     const double off = t_squared.error + 3 * R::kUnit * (most + t_squared.error);
+    const double bound = (off / 6 + R::kLibm + 2 * R::kUnit) * rounded_detail::kUp;
+    if (!is_far_better(bound, sinc.error)) return;
     const Interval s(0, std::max(most, 0.0));
-    sinc = R(Interval(1) - s * Interval(0, 1.0 / 6 + 0x1p-50), 0,
-             (off / 6 + R::kLibm + 2 * R::kUnit) * rounded_detail::kUp);
+    sinc = R(Interval(1) - s * Interval(0, 1.0 / 6 + 0x1p-50), 0, bound);
     cos = R(Interval(1) - s * Interval(0, 0.5), 0, (off / 2 + R::kLibm) * rounded_detail::kUp);
 }
 
@@ -206,13 +219,14 @@ Rounded<Real> tilt_over_across(const Condition& on_axis, const Rounded<Real>& ac
     using R = Rounded<Real>;
     const R plain = select(on_axis, R(R(1) / ahead), R(tilt(across, ahead, along) / across));
     const bool is_counted_from_ahead = along.sin == 0 && along.cos > 0 && along.angle == 0;
-    if (plain.error < HUGE_VAL || across.is_jet() || ahead.is_jet() || !is_counted_from_ahead) return plain;
+    if (is_ordinary(plain) || across.is_jet() || ahead.is_jet() || !is_counted_from_ahead) return plain;
     const R q = across / ahead;
     if (!(lower_end(ahead) > 0 && magnitude(q.range) + q.error <= 1)) return plain;
     const double far = magnitude(q.range);
-    return R(Interval(1 - far * far / 3 * rounded_detail::kUp, 1), 0,
-             0.58 * q.error + R::kLibm + 2 * R::kUnit) /
-           ahead;
+    const R better =
+        R(Interval(1 - far * far / 3 * rounded_detail::kUp, 1), 0, 0.58 * q.error + R::kLibm + 2 * R::kUnit) /
+        ahead;
+    return is_far_better(better.error, plain.error) ? better : plain;
 }
 
 /// A ray of the same direction, made longer where the squares of x and z would underflow.
