@@ -422,7 +422,7 @@ std::vector<ChainCase> warp_cases() {
         return s;
     };
     const auto exactly = [](Settings s) {
-        s.tol = 0;
+        s.tol = 0, s.scheme = Scheme::exact;
         return s;
     };
     const auto lens = [=](const Settings& s) {
