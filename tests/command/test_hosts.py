@@ -141,6 +141,21 @@ class Hosts(unittest.TestCase):
             _, page, _ = self.run_program("doctor")
             self.assertTrue(self.line(page, "pvpython").startswith(expected), page)
 
+    def test_doctor_does_not_wait_for_what_a_host_leaves_running(self):
+        self.host("pvpython", "/bin/sleep 90 &\necho bad; exit 1")
+        _, page, _ = self.run_program("doctor")
+        self.assertTrue(self.line(page, "pvpython").endswith(": cannot be asked: bad"), page)  # not: within a minute
+
+    def test_doctor_reads_no_more_than_it_needs(self):
+        self.host("pvpython", "/usr/bin/yes | /usr/bin/head -c 3000000; exit 1")
+        _, page, _ = self.run_program("doctor")
+        self.assertTrue(self.line(page, "pvpython").endswith(": cannot be asked: y"), page)
+
+    def test_doctor_prints_nothing_that_a_terminal_obeys(self):
+        self.host("pvpython", r"printf '\033[2J\000\377bad'; exit 1")
+        _, page, _ = self.run_program("doctor")
+        self.assertRegex(self.line(page, "pvpython"), r"^FAULT ParaView \(.*\): cannot be asked: \?\[2J\?\?bad$")
+
     def test_doctor_says_where_it_cannot_write(self):
         status, _, error = self.run_program("doctor", TMPDIR=str(self.folder / "nowhere"))
         self.assertEqual(status, 1)

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -33,15 +34,24 @@ using Clock = std::chrono::steady_clock;
     _exit(127);
 }
 
-/// Reads what comes until the other end is closed, or `end`; false for the latter.
-bool read_until(int in, Clock::time_point end, std::string& text) {
+/// Whether `child` has ended; its status can still be had.
+bool has_ended(pid_t child) {
+    siginfo_t what{};
+    return waitid(P_PID, static_cast<id_t>(child), &what, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           what.si_pid == child;
+}
+
+/// Reads what comes until the other end is closed, `child` has ended, though what it left running has the
+/// other end still, or it is `end`; false for the last.
+bool read_until(int in, pid_t child, Clock::time_point end, std::string& text) {
     char buffer[4096];
     while (true) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
         if (left <= 0) return false;
         pollfd ready{in, POLLIN, 0};
-        const int found = poll(&ready, 1, static_cast<int>(left));
+        const int found = poll(&ready, 1, static_cast<int>(std::min<long long>(left, 100)));
         if (found < 0 && errno != EINTR) return true;
+        if (found == 0 && has_ended(child)) return true;
         if (found <= 0) continue;
         const ssize_t count = read(in, buffer, sizeof buffer);
         if (count < 0 && errno == EINTR) continue;
@@ -103,7 +113,7 @@ ProgramRun run_program(const std::vector<std::string>& words, int seconds) {
         throw Error(std::string("no process: ") + std::strerror(errno));
     }
     ProgramRun result;
-    const bool ended = read_until(ends[0], Clock::now() + std::chrono::seconds(seconds), result.text);
+    const bool ended = read_until(ends[0], child, Clock::now() + std::chrono::seconds(seconds), result.text);
     close(ends[0]);
     if (!ended) {
         kill(-child, SIGKILL);
