@@ -4,7 +4,7 @@
 # tests of the core cover, clang-tidy, and what became of the last version's binary interface. It says how long each step took; the
 # last line is ctest's own summary.
 . "$(dirname "$0")/steps.sh"
-tests/install_packages.sh nightly arm64
+tests/install_packages.sh nightly arm64 packages
 
 # Each file by itself, so that what it forgets to include is found, and clang-tidy has a command for each.
 clang="build/clang"

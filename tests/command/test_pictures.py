@@ -188,7 +188,7 @@ class Pictures(unittest.TestCase):
         alone = shutil.copy(PROGRAM, self.folder)
         result = subprocess.run([alone, "hash", "sky.pano"], capture_output=True, text=True, timeout=50)
         self.assertEqual((result.returncode, result.stdout), (1, ""))
-        self.assertRegex(result.stderr, r"^anamorph: .*/anamorph-pictures: No such file .*OpenImageIO alone\)\n$")
+        self.assertRegex(result.stderr, r"^anamorph: .*/anamorph-pictures: No such file .*OpenImageIO alone; Debian: anamorph-openimageio\)\n$")
 
     def test_parallel_as_the_page_shows_it(self):
         if not shutil.which("parallel"):

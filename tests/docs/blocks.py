@@ -58,10 +58,13 @@ LINES = [
     Line(r"examples/demo\.sh ", (), why="tests/run.sh runs it"),
     Line(r"tests/run\.sh ", (), why="it runs this test, among others"),
     Line(r"tests/nightly\.sh ", (), why="it takes hours, and runs this test before them"),
+    Line(r"cmake --preset release -DANAMORPH_TESTS=OFF && ", (), why="tests/packages/test_packages.py makes the packages of the build"),
+    Line(r"sudo apt install \./", (), why="tests/packages.sh installs them in a clean Debian"),
+    Line(r"anamorph (run|doctor)", (), why="tests/command/test_hosts.py runs both"),
     Line(r"sudo apt-get install ", (), why="these packages conflict with ParaView's; test_blocks.py looks for their names"),
     Line(r"tests/install_packages\.sh ", (), why="tests install nothing; test_blocks.py looks for the sections"),
     # Builds: configured in a fresh folder; of building, ninja says what it would do.
-    Line(r"cmake --preset release ", ("configure.release",)),
+    Line(r"cmake --preset release (?!-DANAMORPH_TESTS)", ("configure.release",)),
     Line(r"cmake (--build )?--preset vtk\b", ("configure.vtk",)),
     Line(r"cmake (--build )?--preset paraview\b", ("configure.paraview",)),
     # VTK.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// anamorph: what operations there are, and their keys. What it does with pictures is in anamorph-pictures, which needs OpenImageIO.
+// anamorph: what operations there are, and their keys; hosts with the plugin, and what they see of it. What it does with pictures
+// is in anamorph-pictures, which needs OpenImageIO.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -7,11 +8,14 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <iostream>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "anamorph/version.h"
+#include "doctor.h"
+#include "plugin_place.h"
 #include "reference.h"
 
 namespace anamorph::command {
@@ -31,12 +35,10 @@ constexpr std::string_view kOfPictures[] = {"hash", "draw", "join"};
 
 /// Becomes the program beside this one that has these subcommands. Throws Error where it cannot.
 void run_pictures(char** argv) {
-    std::error_code error;
-    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::string program = (own.parent_path() / "anamorph-pictures").string();
+    const std::string program = (own_folder() / "anamorph-pictures").string();
     execv(program.c_str(), argv);
     throw Error(printable(program) + ": " + std::strerror(errno) + " (" + argv[1] +
-                " is there with OpenImageIO alone)");
+                " is there with OpenImageIO alone; Debian: anamorph-openimageio)");
 }
 
 int run(int argc, char** argv) {
@@ -47,11 +49,23 @@ int run(int argc, char** argv) {
     app.footer("hash, draw and join: of pictures (anamorph hash --help)");
     std::string operation;
     help->add_option("OPERATION", operation, "Its name; without, all are listed");
+    CLI::App* command = app.add_subcommand("run", "Run a command that finds the plugin for OpenImageIO");
+    std::vector<std::string> words;
+    command->add_option("COMMAND", words, "What to run, with its arguments")->required()->option_text("...");
+    command->footer("anamorph run oiiotool view.pano -o view.jpg");
+    CLI::App* doctor = app.add_subcommand("doctor", "Say what the hosts of this machine see of Anamorph");
+    doctor->footer("The status is 1 where a host cannot read recipes, or load the filters that it has.");
     try {
+        if (argc > 2 && std::string_view(argv[1]) == "run" && argv[2][0] != '-')
+            return run_with_plugin(argv + 2);
         if (argc > 1 && std::ranges::find(kOfPictures, argv[1]) != std::end(kOfPictures)) run_pictures(argv);
         app.parse(argc, argv);
-        print_help(operation);
-        if (std::cout.flush()) return 0;
+        bool good = true;
+        if (*doctor)
+            good = examine_hosts(std::cout);
+        else
+            print_help(operation);
+        if (std::cout.flush()) return good ? 0 : 1;
         throw Error("the standard output cannot be written");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
