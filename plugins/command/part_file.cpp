@@ -30,6 +30,21 @@ std::string manifest_of(const std::string& file) {
     return file + ".tiles";
 }
 
+/// Throws unless `file` is a part or may become one: what else stands there is somebody's.
+void expect_part_or_nothing(const std::string& file) {
+    const std::string name = manifest_of(file), first = kFirstLine;
+    std::ifstream manifest(name, std::ios::binary);
+    std::string begin(first.size(), '\0');
+    manifest.read(begin.data(), std::ssize(begin));
+    begin.resize(static_cast<std::size_t>(manifest.gcount()));
+    if (!first.starts_with(begin))
+        throw Error(printable(name) + " is there, and no part of a picture: must be another name");
+    std::error_code none;
+    if (!manifest.is_open() && std::filesystem::file_size(file, none) > 0 && !none)
+        throw Error(printable(file) + " is there, and no part of a picture, which has a " +
+                    printable(std::filesystem::path(name).filename().string()) + ": must be another name");
+}
+
 /// A recipe's name as one line.
 std::string one_line(std::string text) {
     std::replace_if(
@@ -312,6 +327,7 @@ std::int64_t draw_part(const std::string& recipe, const Share& share, const std:
     const ImageSpec& spec = head.spec;
     const TileGrid tiles(spec);
     const std::string name = manifest_of(file);
+    expect_part_or_nothing(file);
     const OpenFile pixels(file, O_RDWR | O_CREAT);
     pixels.lock();
     const OpenFile manifest(name, O_RDWR | O_CREAT);
@@ -362,6 +378,11 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
         if (m.head.share.count != first.head.share.count || m.head.recipe != first.head.recipe ||
             picture_text(m.head.spec) != text)
             throw Error(name + " is a part of another picture than " + printable(files[order[0]]));
+        if (m.head.state != first.head.state)
+            throw Error(name +
+                        " was drawn when the recipe or its files, by their names, sizes and times, were "
+                        "others than for " +
+                        printable(files[order[0]]) + ": must be drawn anew");
         if (m.head.share.index != static_cast<int>(k) + 1)
             throw Error(m.head.share.index == static_cast<int>(k)
                             ? name + " is part " + std::to_string(k) + " a second time"

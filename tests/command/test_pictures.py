@@ -173,6 +173,25 @@ class Pictures(unittest.TestCase):
         self.refused("there is no such file", "join", "p4")
         self.ok("draw", "sky.pano?yaw=1", "--part", "2/3", "-o", "q2")
         self.refused("is a part of another picture", "join", "p1", "q2", "p3")
+        # What the recipe says, or what is in its files, may have changed in between.
+        recipe, noise = self.folder / "sky.pano", self.folder / "noise.ppm"
+        for file, other in ((recipe, VIEW.replace("yaw=30", "yaw=31").replace("noise.tif", "noise.ppm").encode()), (noise, noise_ppm(256, 128)[:-3] + b"\0\0\0")):
+            stat, before = file.stat(), file.read_bytes()
+            file.write_bytes(other)
+            os.utime(file, ns=(10**18, 10**18))
+            self.ok("draw", "sky.pano", "--part", "2/3", "-o", "changed")
+            self.refused("changed was drawn when the recipe or its files", "join", "p1", "changed", "p3")
+            file.write_bytes(before)
+            os.utime(file, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+        self.ok("join", "p1", "p2", "p3")
+        # What is no part stays.
+        for name in ("sky.pano", "noise.ppm"):
+            before = (self.folder / name).read_bytes()
+            self.refused(name + " is there, and no part", "draw", "sky.pano", "--part", "1/3", "-o", name)
+            self.assertEqual((self.folder / name).read_bytes(), before)
+        (self.folder / "mine.tiles").write_text("of a floor")
+        self.refused("mine.tiles is there, and no part", "draw", "sky.pano", "--part", "1/3", "-o", "mine")
+        self.assertFalse((self.folder / "mine").exists())
         manifest = self.folder / "p2.tiles"
         text = manifest.read_text()
         manifest.write_text(text[:-40])
