@@ -145,6 +145,13 @@ TEST_F(FigureBackgrounds, ABackdropIsSeenBehindFigures) {
     EXPECT_EQ(missing.spec.get_string_attribute("anamorph:missing_textures"), "backdrop");
 }
 
+TEST_F(FigureBackgrounds, BumpsThatAreNotThereAreAnError) {
+    write_text("torn.png", "\x89PNG");
+    for (const std::string file : {"nothing.exr", "torn.png"})
+        EXPECT_THAT(open_error("dressed.n?size=96&bump=" + file),
+                    HasSubstr("anamorph: bump=" + file + ": must be an image that can be opened"));
+}
+
 TEST_F(FigureBackgrounds, MipsAreAPictureForEachTexture) {
     write_panorama("city.exr", 64, 32);
     const Ran ran = run("oiiotool 'dressed.n?output=mips' --subimage 0 -o mips.exr");

@@ -697,6 +697,9 @@ std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
         request.look.textures = film->images();
         for (const std::string& name : film->images()) request.maps.push_back(maps_of(name, input));
     }
+    // Scripts may name textures that nobody has; this one is meant.
+    if (std::find(input.missing.begin(), input.missing.end(), "picture/bump") != input.missing.end())
+        throw Error("bump", printable(input.files.at("bump").name), "must be an image that can be opened");
     for (const std::string& key : input.missing)
         request.missing += (request.missing.empty() ? "" : ", ") + key.substr(key.find('/') + 1);
     if (are_mips(input.values)) return read_mips(input, *film, request);
