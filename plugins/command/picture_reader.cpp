@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "anamorph/error.h"
+#include "anamorph/file_names.h"
 #include "anamorph/parameter/parameter.h"
 #include "recipe.h"
 #include "recipe_content.h"
@@ -36,7 +37,9 @@ class RecipePicture final : public PictureReader {
 /// A file that OpenImageIO reads, one row of tiles of ours after the other.
 class FilePicture final : public PictureReader {
   public:
-    explicit FilePicture(const std::string& name) : m_name(name), m_file(OIIO::ImageInput::open(name)) {
+    explicit FilePicture(const std::string& name) : m_name(name) {
+        check_file_name("FILE", name);
+        m_file = OIIO::ImageInput::open(name);
         if (!m_file) throw Error(OIIO::geterror());
         while (m_file->seek_subimage(static_cast<int>(m_specs.size()), 0)) {
             m_specs.push_back(m_file->spec());

@@ -127,7 +127,7 @@ class Pictures(unittest.TestCase):
         self.assertNotEqual(text.split(b"\nspec")[0], manifest.read_bytes().split(b"\nspec")[0])
 
     def test_killed_it_goes_on(self):
-        name = "sky.pano?size=3000x3000&tol=0&filter=bicubic"
+        name = "sky.pano?size=1800x1800&tol=0&filter=bicubic"
         arguments = [PROGRAM, "draw", name, "--part", "2/2", "-o", "half"]
         for wait in (0.2, 0.4):
             process = subprocess.Popen(arguments, cwd=self.folder)
@@ -163,6 +163,9 @@ class Pictures(unittest.TestCase):
         self.assertFalse((self.folder / "x").exists())
         self.refused("nothing.tif", "hash", "nothing.tif")
         self.refused("fov=0", "hash", "sky.pano?fov=0")
+        os.mkfifo(self.folder / "pipe")
+        for name in ("pipe", "/dev/zero", "."):
+            self.refused("not a file but a folder, pipe or device", "hash", name)
         self.refused("out.nothing", "draw", "sky.pano", "-o", "out.nothing")
         self.refused("no/out.tif", "draw", "sky.pano", "-o", "no/out.tif")
         for k in (1, 2, 3):
