@@ -257,11 +257,8 @@ class Command {
                         "Instead of outlines: the longest axis of each body, or lines from joint to joint")
             ->transform(CLI::CheckedTransformer(sticks))
             ->option_text("none|axes|joints [none]");
-        static const std::map<std::string, OutlineStyle> styles{{"limbs", OutlineStyle::limbs},
-                                                                {"levels", OutlineStyle::levels},
-                                                                {"boxes", OutlineStyle::boxes},
-                                                                {"contours", OutlineStyle::contours},
-                                                                {"cylinders", OutlineStyle::cylinders}};
+        static const std::map<std::string, OutlineStyle> styles(std::begin(kOutlineStyles),
+                                                                std::end(kOutlineStyles));
         sub->add_option(
                "--outlines", d.style,
                "Instead of outlines: each figure as a dot, sticks, boxes or contours, the first that is "

@@ -131,10 +131,7 @@ void read_projection(const std::string& text, SourceFacts& facts) {
                                       {distance, &facts.distance},
                                       {second, &facts.second}})
         if (Strutil::string_is_float(written)) *to = Strutil::stod(written);
-    constexpr std::string_view kRows = "rows:";
-    const bool around_rows = padding.compare(0, kRows.size(), kRows) == 0;
-    const std::string pixels = padding.substr(around_rows ? kRows.size() : 0);
-    if (Strutil::string_is_float(pixels)) facts.padding = Strutil::stod(pixels) * (around_rows ? -1 : 1);
+    facts.padding = Padding::parse(padding);
 }
 
 /// A number of metadata. EXR and TIFF bring whole ones as integers, which are no floats to OpenImageIO.

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ void declare_recipes() {
 /// Adds the subcommands; `run` is then what is to be done.
 void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     struct Given {
-        std::string recipe, output, part;
+        std::string recipe, output;
+        std::optional<std::string> part;
         std::vector<std::string> names;
     };
     const auto given = std::make_shared<Given>();
@@ -66,10 +68,10 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     draw->callback([=, &run] {
         run = [=] {
             declare_recipes();
-            if (given->part.empty())
+            if (!given->part)
                 draw_picture_file(given->recipe, given->output);
             else
-                draw_part(given->recipe, share_of(given->part), given->output);
+                draw_part(given->recipe, share_of(*given->part), given->output);
         };
     });
 

@@ -48,6 +48,13 @@ class Help(unittest.TestCase):
                                                 default and " [%s]" % default, meaning)
             self.assertEqual(page, expected.strip())
 
+    def test_pages_of_what_is_done_with_pictures(self):
+        if not os.path.exists(os.path.join(os.path.dirname(PROGRAM), "anamorph-pictures")):
+            self.skipTest("this build has no OpenImageIO")
+        for name in ("hash", "draw", "join"):
+            self.assertEqual(run("help", name), run(name, "--help"))
+            self.assertIn("Usage: anamorph " + name, run("help", name)[1])
+
     def test_what_is_wrong_is_one_line(self):
         for arguments, message in (
                 (["help", "twist"], 'operation=twist: must be one of pano, '),

@@ -185,6 +185,13 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
         EXPECT_THAT(error_of({{"solid_scale", scale}}), HasSubstr("must be a number from 0.001 to 1e+06"));
     for (const char* scale : {"nan", "inf", "2e6"})
         EXPECT_THAT(error_of({{"bump_scale", scale}}), HasSubstr("must be a number from -1e+06 to 1e+06"));
+    // What would mean nothing is not kept in silence.
+    for (const char* key : {"solid_scale", "solid_samples"})
+        EXPECT_THAT(error_of({{key, "5"}}), HasSubstr(key + std::string("=5: must be given with solid")));
+    EXPECT_THAT(error_of({{"bump_scale", "5"}}), HasSubstr("bump_scale=5: must be given with bump"));
+    for (const char* outlines : {"limbs", "boxes", "cylinders"})
+        EXPECT_THAT(error_of({{"style", "outline"}, {"outlines", outlines}, {"outline_tol", "2"}}),
+                    HasSubstr("outline_tol=2: must be given with outlines=levels or outlines=contours"));
     for (const char* key : {"solid", "bump"})
         EXPECT_THAT(error_of({{"style", "depth"}, {key, "wood"}}),
                     HasSubstr("is of styles shaded and textured alone"));

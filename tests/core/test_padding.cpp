@@ -100,7 +100,7 @@ TEST(ChartPadding, ScalesAreAsPreciseAsTheySay) {
 TEST(ChartPadding, IsHalvedWithThePicture) {
     const Chart chart = chart_of(cubemap3x2, 101, 6), half = chart.resized(150, 100);
     EXPECT_EQ(chart.padding(), 6);
-    EXPECT_NEAR(half.padding(), 6 * 150.0 / 303, 1e-15);
+    EXPECT_NEAR(half.padding().pixels, 6 * 150.0 / 303, 1e-15);
     const Ray<double> ray{0.3, -0.2, 1};
     const int front = chart.piece_of(ray);
     EXPECT_NEAR(half.point(ray, front).x, chart.point(ray, front).x * 150 / 303, 1e-9);
@@ -165,7 +165,8 @@ TEST(ChartPadding, RowsOfFacesAreWhereTheyBelong) {
          {std::pair{1280, 720}, {2560, 1440}, {640, 360}, {7, 8}, {1048573, 1048576}})
         for (const int margin : {0, 2, 31}) {
             if (margin > 0 && 8 * margin > std::min(width / 3, height / 2)) continue;
-            const Chart chart(eac, width, height, 0, PixelSpacing::edges, "", 1, {}, {}, -margin);
+            const Chart chart(eac, width, height, 0, PixelSpacing::edges, "", 1, {}, {},
+                              Padding(margin, true));
             const double rounding = 1e-15 * 8 * std::max(width, height);
             for (int i = 0; i < 2000; ++i) {
                 const Ray<double> ray{normal(random), normal(random), normal(random)};
@@ -204,7 +205,7 @@ TEST(ChartPadding, RowsOfFacesAreWhereTheyBelong) {
 
 TEST(ChartPadding, PicturesOfRowsHoldTheirBounds) {
     const auto rows = [](int width, int height, double margin) {
-        return Chart(eac, width, height, 0, PixelSpacing::edges, "", 1, {}, {}, -margin);
+        return Chart(eac, width, height, 0, PixelSpacing::edges, "", 1, {}, {}, Padding(margin, true));
     };
     for (const double tol : {0.5, 0.01, 1e-6, 0.0})
         for (const auto& [from, to] : {std::pair{rows(320, 180, 2), chart_of(cubemap3x2, 64, 9)},

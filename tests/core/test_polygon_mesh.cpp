@@ -10,7 +10,7 @@
 #include "anamorph/mesh/mesh_file.h"
 #include "anamorph/mesh/mesh_scattered.h"
 #include "anamorph/mesh/scattered.h"
-#include "warp_findings.h"
+#include "scattered_findings.h"
 
 namespace anamorph {
 namespace {
@@ -111,10 +111,7 @@ TEST(PolygonMesh, PlansHoldTheirTolerance) {
     const ControlPoints points = strips(random, 9);
     for (const double tol : {1.0, 0.1, 0.01}) {
         const ScatteredPlan plan(Scattered(points, kTarget, kSource, 1), WarpScheme::automatic, tol);
-        const test::Findings found = test::examine(plan, [&](double x, double y) {
-            const CubicTriangle& t = plan.map().triangle_at(x, y);
-            return plan.map().at(t, static_cast<long double>(x), static_cast<long double>(y));
-        });
+        const test::Findings found = test::findings_of(plan);
         EXPECT_LE(found.worst_excess, 0);
         EXPECT_LE(found.worst_bound, tol);
         EXPECT_EQ(found.overlaps, 0);

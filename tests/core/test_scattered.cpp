@@ -9,7 +9,7 @@
 #include "anamorph/mesh/mesh_scattered.h"
 #include "each_instruction_set.h"
 #include "mesh_cases.h"
-#include "warp_findings.h"
+#include "scattered_findings.h"
 
 namespace anamorph {
 namespace {
@@ -103,10 +103,7 @@ TEST(Scattered, HoldsTheTolerance) {
             SCOPED_TRACE(::testing::Message() << count << " points, tol " << tol);
             const ScatteredPlan plan(Scattered(random_points(random, count, 15), kTarget, kSource, 1),
                                      WarpScheme::automatic, tol);
-            const test::Findings found = test::examine(plan, [&](double x, double y) {
-                const CubicTriangle& t = plan.map().triangle_at(x, y);
-                return plan.map().at(t, static_cast<long double>(x), static_cast<long double>(y));
-            });
+            const test::Findings found = test::findings_of(plan);
             EXPECT_LE(found.worst_excess, 0);
             EXPECT_LE(found.worst_bound, tol);
             EXPECT_EQ(found.overlaps, 0);
@@ -167,10 +164,7 @@ TEST(Scattered, ThinTrianglesKeepTheTolerance) {
         }
         for (const double tol : {1.0, 1.0 / 64}) {
             const ScatteredPlan plan(Scattered(points, kTarget, kSource, 1), WarpScheme::automatic, tol);
-            const test::Findings found = test::examine(plan, [&](double x, double y) {
-                const CubicTriangle& t = plan.map().triangle_at(x, y);
-                return plan.map().at(t, static_cast<long double>(x), static_cast<long double>(y));
-            });
+            const test::Findings found = test::findings_of(plan);
             EXPECT_LE(found.worst_excess, 0);
             EXPECT_EQ(found.overlaps, 0);
         }

@@ -153,6 +153,9 @@ class ParameterEnds : public InFolder {
         }
         if (operation.name == "figure" && (key == "outlines" || key == "outline_tol"))
             add("style", "outline");
+        if (key == "outline_tol") add("outlines", "levels");
+        if (key == "solid_scale" || key == "solid_samples") add("solid", "wood");
+        if (key == "bump_scale") add("bump", "city.exr");
         if (operation.name == "mosaic") {
             if (key == "circles" || key == "circle") {
                 sources[0] = "tall.exr";

@@ -4,7 +4,7 @@ here, on a sphere, a plane and a volume; without a picture lines are shown; on t
 import os
 import subprocess
 
-from display import xvfb_run
+from display import run_shown, xvfb_run
 
 COMMON = r'''
 import os
@@ -146,10 +146,7 @@ SaveScreenshot(sys.argv[1] + ".png", view, ImageResolution=[SIZE, SIZE])
 
 
 def run(*command):
-    done = subprocess.run([*xvfb_run(391), *command], env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}, capture_output=True,
-                          text=True, timeout=200)
-    assert done.returncode == 0, (done.returncode, done.stdout[-3000:], done.stderr[-5000:])
-    return done.stdout
+    return run_shown(391, *command).stdout
 
 
 def bytes_of(name):

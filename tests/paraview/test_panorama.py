@@ -4,7 +4,7 @@ in every mode, on blocks, with what hides, out of a state file, on two ranks, an
 import os
 import subprocess
 
-from display import xvfb_run
+from display import run_shown, xvfb_run
 
 SCRIPT = r'''
 import os
@@ -220,9 +220,7 @@ SaveScreenshot(sys.argv[1] + "_all.png", view, ImageResolution=[200, 200])
 
 
 def run(*command):
-    done = subprocess.run([*xvfb_run(367), *command], env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}, capture_output=True,
-                          text=True, timeout=120)
-    assert done.returncode == 0, (done.returncode, done.stdout[-3000:], done.stderr[-5000:])
+    done = run_shown(367, *command, timeout=120)
     assert "ERR" not in done.stderr and "rror" not in done.stderr, done.stderr[-5000:]
     return done.stdout
 

@@ -325,7 +325,7 @@ void vtkAnamorphBlendShapeReader::File::read_gltf(const std::string& path, int w
 
 void vtkAnamorphBlendShapeReader::File::read_obj(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
-        bytes_of(path);
+        if (!std::ifstream(path)) throw Error("FileName", path, "there is no such file that can be read");
         vtkNew<vtkOBJReader> reader;
         const anamorph_vtk::ErrorTexts errors(reader);
         reader->SetFileName(path.c_str());

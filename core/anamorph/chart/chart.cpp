@@ -4,6 +4,7 @@
 #include "anamorph/chart/chart_formulas.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -200,7 +201,7 @@ double vfov_of_plane_height(Projection projection, double height, const Distance
 
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
              const std::string& prefix, const Distance& d, const LensModel& lens,
-             const VerticalField& vertical, double padding)
+             const VerticalField& vertical, const Padding& padding)
     : m_projection(projection),
       m_width(width),
       m_height(height),
@@ -216,7 +217,8 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     if (m_fov == 0) m_fov = default_fov(projection);
     check_fov(projection, m_fov, m_setting, prefix + "fov");
     // A margin that cannot be is refused below.
-    const double row_margin = padding < 0 && -4 * padding < width ? -padding : 0;
+    const bool has_margin = padding.around_rows && padding.pixels > 0 && 4 * padding.pixels < width;
+    const double row_margin = has_margin ? padding.pixels : 0;
     if (faces_of(projection).columns > 0)
         m_pieces = face_pieces(projection, width, height, row_margin, size_name(prefix));
     else
@@ -268,15 +270,14 @@ void Chart::check_padding(const std::string& prefix, const LensModel& lens) cons
     if (!has_whole_faces && m_spacing == PixelSpacing::centers)
         throw Error(size_name(prefix), std::to_string(m_width) + "x" + std::to_string(m_height),
                     "pixels=centers needs faces of whole pixels");
-    if (m_padding == 0) return;
-    const bool around_rows = m_padding < 0;
-    const double pixels = std::fabs(m_padding);
+    const auto& [pixels, around_rows] = m_padding;
+    if (pixels == 0) return;
     const Box& face = m_pieces[0].box;
     const FaceGrid grid = faces_of(m_projection);
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
     const bool is_round =
         lensed == Lensed::equidistant || lensed == Lensed::stereographic || lensed == Lensed::axial;
-    const std::string name(name_of(m_projection)), text = (around_rows ? "rows:" : "") + brief(pixels);
+    const std::string name(name_of(m_projection)), text = m_padding.text();
     if (grid.joined || (grid.columns == 0 && !is_round))
         throw Error(prefix + "padding", text,
                     "must be of a layout of faces or of a fisheye, which " + name + " is not");
@@ -302,14 +303,27 @@ void Chart::check_padding(const std::string& prefix, const LensModel& lens) cons
         throw Error(prefix + "padding", text, allowed);
 }
 
+std::string Padding::text() const {
+    return (around_rows ? "rows:" : "") + shortest(pixels);
+}
+
+std::optional<Padding> Padding::parse(std::string_view text) {
+    constexpr std::string_view kRows = "rows:";
+    const bool around_rows = text.starts_with(kRows);
+    if (around_rows) text.remove_prefix(kRows.size());
+    double pixels = 0;
+    if (!text_file::take_number(text, pixels) || !text.empty()) return {};
+    return Padding(pixels, around_rows);
+}
+
 bool Chart::has_joined_rows() const {
     const FaceGrid grid = faces_of(m_projection);
-    return grid.columns > 0 && !grid.joined && (m_padding < 0 || m_width % grid.columns != 0);
+    return grid.columns > 0 && !grid.joined && (m_padding.around_rows || m_width % grid.columns != 0);
 }
 
 void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     // A difference is off by a unit at most, which is within what width_units says.
-    const long double margin = 2.0L * std::fabs(m_padding);
+    const long double margin = 2.0L * m_padding.pixels;
     // Of joined rows the faces share what their margin leaves: a quotient more.
     const long double columns = has_joined_rows() ? (m_width - margin) / faces_of(m_projection).columns
                                                   : m_pieces[0].box.width() - margin,
@@ -378,7 +392,8 @@ void Chart::set_branches() {
             if (m_vertical.horizon) b.pixel_y = middle;
             if (has_joined_rows()) {
                 const int columns = faces_of(m_projection).columns, column = static_cast<int>(i) % columns;
-                const double margin = std::max(-m_padding, 0.0), sides = m_width - 2 * margin;
+                const double margin = m_padding.around_rows ? m_padding.pixels : 0,
+                             sides = m_width - 2 * margin;
                 if (std::floor(margin) == margin && std::fmod(sides, columns) == 0) {
                     b.pixel_x = margin + (column + 0.5) * (sides / columns);
                 } else {
@@ -396,7 +411,7 @@ Chart Chart::resized(int width, int height) const {
     VerticalField vertical = m_vertical;
     if (vertical.horizon) *vertical.horizon *= static_cast<double>(height) / m_height;
     Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance, {}, vertical,
-                m_padding * width / m_width);
+                {m_padding.pixels * width / m_width, m_padding.around_rows});
     chart.m_lens = m_lens;
     return chart;
 }

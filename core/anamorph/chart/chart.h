@@ -95,6 +95,20 @@ struct VerticalField {
         {};  ///< pixels from the upper edge to the plane's middle; by default half the height
 };
 
+/// How many pixels within its edges the field of view of an image ends.
+struct Padding {
+    double pixels = 0;
+    /// Around each row of faces alone, of those that follow each other there (eac), not around every face.
+    bool around_rows = false;
+
+    Padding(double within = 0, bool rows = false) : pixels(within), around_rows(rows) {}
+    bool operator==(const Padding&) const = default;
+    /// "2", "rows:2".
+    std::string text() const;
+    /// What text() makes; none of other words.
+    static std::optional<Padding> parse(std::string_view text);
+};
+
 /// One smooth piece of a chart: its place in the image, and its axes (right, down, forward) as columns
 /// in the frame of rays. Layouts of faces have more than one.
 struct Piece {
@@ -121,13 +135,12 @@ class Chart {
     /// takes the projection's default (default_fov). `d`: the numbers of projections that have some. `vertical`: only of images that
     /// are one piece, and a horizon only of those without a lens. `padding`: how many pixels within each edge of the image, or of
     /// every face, the field of view ends, less than a quarter of its sides; only of layouts of separate faces and of fisheyes
-    /// without a lens. A negative one is so many pixels around each row of faces alone, of those that follow each other there (eac).
-    /// The columns of such faces need not be whole pixels wide, unless each has a padding: edges between them are then within pixels.
+    /// without a lens. The columns of such faces need not be whole pixels wide, unless each has a padding: edges between them are then within pixels.
     /// `prefix` is put before "fov", "vfov", "size", "d", "e", "lens" and "padding" in errors, and "src" before "size"
     /// is "source ". Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", const Distance& d = {},
-          const LensModel& lens = {}, const VerticalField& vertical = {}, double padding = 0);
+          const LensModel& lens = {}, const VerticalField& vertical = {}, const Padding& padding = {});
 
     /// The horizontal field of view that a chart of this projection has unless it is given one, in degrees.
     static double default_fov(Projection projection);
@@ -143,9 +156,8 @@ class Chart {
     /// The numbers of projections that have some.
     const Distance& distance() const { return m_setting.distance; }
     PixelSpacing spacing() const { return m_spacing; }
-    /// How many pixels within each edge of the image, or of every face, the field of view ends; there the plane goes on. Negative:
-    /// around rows of faces alone.
-    double padding() const { return m_padding; }
+    /// How far within each edge of the image, or of every face, the field of view ends; there the plane goes on.
+    const Padding& padding() const { return m_padding; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
     /// The lens; null where there is none, as in most pictures.
     const Lens* lens() const { return m_lens.get(); }
@@ -263,7 +275,7 @@ class Chart {
     double m_fov;
     PixelSpacing m_spacing;
     VerticalField m_vertical;
-    double m_padding;
+    Padding m_padding;
     Setting m_setting;
     Counted m_counted = Counted::none;
     /// Pixels per unit of the plane, and units per pixel.

@@ -4,7 +4,7 @@
 // A table holds, for each texel, the sum of all texels above and to the left of it; that over a rectangle of whole texels
 // is S(x1, y1) - S(x0, y1) - S(x1, y0) + S(x0, y0). Each tile of kTile texels either way has a table of its own, which is made when it
 // is first asked for, and not kept where many others were asked for since: a rectangle is the sum of its parts in tiles. Sums are
-// integers: uint8 and uint16 lose nothing, with alpha or without, and take 32 bits but for uint16 with alpha; half and float are rounded to a
+// integers: in a tile uint8 and uint16 lose nothing, with alpha or without, and take 32 bits but for uint16 with alpha; half and float are rounded to a
 // unit, a power of two that is at most 2^-60 of the sum of all magnitudes of the channel in the tile.
 #pragma once
 

@@ -189,17 +189,18 @@ ParameterTable figure_view_rows() {
     };
 }
 
+std::vector<rows::Word> outline_words() {
+    std::vector<rows::Word> words;
+    for (const auto& [word, style] : figure::kOutlineStyles) words.emplace_back(word, style);
+    return words;
+}
+
 /// The rows of lines and textures.
 ParameterTable line_rows() {
     using namespace rows;
     return {
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
-        enumeration("outlines", "limbs",
-                    {{"limbs", figure::OutlineStyle::limbs},
-                     {"levels", figure::OutlineStyle::levels},
-                     {"boxes", figure::OutlineStyle::boxes},
-                     {"contours", figure::OutlineStyle::contours},
-                     {"cylinders", figure::OutlineStyle::cylinders}},
+        enumeration("outlines", "limbs", outline_words(),
                     "of style outline: limbs, the outlines of bodies; levels, each figure as a dot, sticks, "
                     "boxes or contours, the "
                     "first that is within outline_tol of these (Fetter); boxes; contours, across each body's "
@@ -479,6 +480,9 @@ void read_solid(const ParameterValues& values, figure::FigureLook& look) {
     for (const char* name : {"solid", "bump"})
         if (!shaded && values.given(name))
             throw Error(name, printable(values.text(name)), "is of styles shaded and textured alone");
+    for (const char* name : {"solid_scale", "solid_samples"})
+        if (solid == "none" && values.given(name))
+            throw Error(name, printable(values.text(name)), "must be given with solid");
     if (solid == "none") return;
     figure::SolidLook own;
     for (const figure::SolidPreset& preset : figure::solid_presets())
@@ -515,6 +519,11 @@ void read_background(const ParameterValues& values, figure::FigureLook& look) {
     }
 }
 
+/// Do the lines of a style hold DrawingOptions::simple_tol? Boxes and cylinders are off by what they come to.
+bool holds_tolerance(figure::OutlineStyle style) {
+    return style == figure::OutlineStyle::levels || style == figure::OutlineStyle::contours;
+}
+
 FigureRequest read_request(const ParameterValues& values) {
     FigureRequest request;
     request.size = rows::size_of(values, {kDefaultSide, kDefaultSide});
@@ -531,6 +540,8 @@ FigureRequest read_request(const ParameterValues& values) {
     look.backdrop = values.given("backdrop");
     read_solid(values, look);
     look.bumps = values.given("bump");
+    if (!look.bumps && values.given("bump_scale"))
+        throw Error("bump_scale", printable(values.text("bump_scale")), "must be given with bump");
     look.bump_scale = values.number("bump_scale");
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
@@ -539,6 +550,9 @@ FigureRequest read_request(const ParameterValues& values) {
     look.lines.simple_tol = values.number("outline_tol");
     if (look.style != figure::FigureStyle::outline && values.given("outlines"))
         throw Error("outlines", values.text("outlines"), "is of style outline alone");
+    if (!holds_tolerance(look.lines.style) && values.given("outline_tol"))
+        throw Error("outline_tol", printable(values.text("outline_tol")),
+                    "must be given with outlines=levels or outlines=contours");
     read_viewport(values, look);
     request.camera = three(values, "camera", -kFar, kFar);
     request.place = three(values, "place", -kFar, kFar);
@@ -641,10 +655,8 @@ class Figures final : public Pictures {
                 picture.says.push_back({"oiio:ColorSpace", std::string("sRGB")});
         }
         const bool chords = m_request.look.style == figure::FigureStyle::outline;
-        // Boxes and cylinders hold no tolerance: anamorph:max_error is what they come to.
         const figure::DrawingOptions& lines = m_request.look.lines;
-        const bool holds =
-            lines.style == figure::OutlineStyle::levels || lines.style == figure::OutlineStyle::contours;
+        const bool holds = holds_tolerance(lines.style);
         if (lines.style == figure::OutlineStyle::limbs || holds)
             picture.says.push_back(
                 {"anamorph:tol", chords ? kChordError + (holds ? lines.simple_tol : 0) : 0.0});

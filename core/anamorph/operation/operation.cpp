@@ -77,11 +77,11 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
                                           {" vfov=", facts.vfov},
                                           {" d=", facts.distance},
                                           {" e=", facts.second},
-                                          {" padding=", facts.padding},
                                           {" yaw=", facts.yaw},
                                           {" pitch=", facts.pitch},
                                           {" roll=", facts.roll}})
             if (value) key += name + shortest(*value);
+        if (facts.padding) key += " padding=" + facts.padding->text();
         if (const std::optional<PanoramaCrop>& crop = facts.crop)
             for (const double value : {crop->width, crop->height, crop->x, crop->y, crop->w, crop->h})
                 key += " crop " + shortest(value);

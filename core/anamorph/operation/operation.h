@@ -42,8 +42,8 @@ struct SourceFacts {
     /// in degrees, and its lens.
     std::optional<Projection> projection = {};
     std::string said_by = {};
-    std::optional<double> fov = {}, vfov = {}, distance = {}, second = {},
-                          padding = {};  ///< its numbers d and e
+    std::optional<double> fov = {}, vfov = {}, distance = {}, second = {};  ///< its numbers d and e
+    std::optional<Padding> padding = {};
     std::optional<LensModel> lens = {};
     /// The part of a panorama that it says it is, of an equirectangular one of 180 degrees from top to bottom.
     std::optional<PanoramaCrop> crop = {};

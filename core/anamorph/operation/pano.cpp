@@ -289,22 +289,18 @@ bool is_given(const ParameterValues& values, const std::string& name) {
     return values.knows(name) && values.given(name);
 }
 
-/// The pixels that srcpadding or padding says, as Chart has them (negative around rows); none where the table has no such row or it is
-/// not given. Throws Error.
-std::optional<int> padding_of(const ParameterValues& values, const std::string& name) {
+/// What srcpadding or padding says; none where the table has no such row or it is not given. Throws Error.
+std::optional<Padding> padding_of(const ParameterValues& values, const std::string& name) {
     if (!is_given(values, name)) return {};
     const std::string& text = values.text(name);
-    const std::string rows = "rows:";
-    const bool around_rows = text.compare(0, rows.size(), rows) == 0;
-    const std::string pixels = text.substr(around_rows ? rows.size() : 0);
-    const bool is_number =
-        !pixels.empty() && pixels.size() < 7 && pixels.find_first_not_of("0123456789") == pixels.npos;
-    if (!is_number)
+    const std::optional<Padding> padding = Padding::parse(text);
+    const bool is_whole = text.find_first_not_of("0123456789", text.find(':') + 1) == text.npos;
+    if (!padding || !is_whole || padding->pixels >= 1e6)
         throw Error(
             name, printable(text),
             "must be an integer from 0 to less than a quarter of the sides of a face, in pixels, or of "
             "eac rows: and that, around its rows of faces");
-    return std::stoi(pixels) * (around_rows ? -1 : 1);
+    return padding;
 }
 
 /// The horizontal field of view that is asked for, in degrees or by a focal length; none where it is not. `of`: "src" or nothing.
@@ -525,8 +521,8 @@ Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const LensModel lens = lens_of(values, "lens");
     Size size = values.given("size") ? values.extent("size") : Size{0, -1};
     const Field field = target_field(values, to, d, size);
-    const int padding = padding_of(values, "padding").value_or(0);
-    const auto chart = [&](int width, int height, const LensModel& through, int within = 0) {
+    const Padding padding = padding_of(values, "padding").value_or(Padding());
+    const auto chart = [&](int width, int height, const LensModel& through, const Padding& within = {}) {
         return Chart(to, width, height, field.fov, PixelSpacing::edges, "", d, through, field.vertical,
                      within);
     };
@@ -537,8 +533,8 @@ Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     if (!values.given("size")) {
         const FaceGrid grid = faces_of(to);
         size = default_size(to, field, d, lens.magnification(), source);
-        const int margins = 2 * std::abs(padding);
-        size = {size.width + margins * (padding < 0 ? 1 : std::max(1, grid.columns)),
+        const int margins = 2 * static_cast<int>(padding.pixels);
+        size = {size.width + margins * (padding.around_rows ? 1 : std::max(1, grid.columns)),
                 size.height + margins * std::max(1, grid.rows)};
     } else if (size.height < 0) {
         // Near where a projection ends the height that belongs to a width has no end either.
@@ -685,8 +681,8 @@ TakenSource read_source(const ParameterValues& values, const SourceFacts& facts)
         cut.vertical.fov =
             vfov_by_fov(from, fov, facts.width - edge, facts.height - edge, d, facts.pixel_aspect);
     }
-    const double said = facts.projection == from ? facts.padding.value_or(0) : 0,
-                 padding = padding_of(values, "srcpadding").value_or(said);
+    const Padding said = facts.projection == from ? facts.padding.value_or(Padding()) : Padding(),
+                  padding = padding_of(values, "srcpadding").value_or(said);
     return {
         Chart(from, facts.width, facts.height, cut.fov, spacing, "src", d, srclens, cut.vertical, padding),
         reason + fov_reason + whole, cut.ahead};

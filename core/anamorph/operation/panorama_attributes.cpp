@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/operation/panorama_attributes.h"
 
-#include <cmath>
 #include <utility>
 
 namespace anamorph {
@@ -13,9 +12,7 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
     const int numbers = numbers_of(picture.projection());
     if (numbers > 0) projection += " d=" + shortest(picture.distance().d);
     if (numbers > 1) projection += " e=" + shortest(picture.distance().e);
-    if (picture.padding() != 0)
-        projection +=
-            (picture.padding() < 0 ? " padding=rows:" : " padding=") + shortest(std::fabs(picture.padding()));
+    if (picture.padding().pixels != 0) projection += " padding=" + picture.padding().text();
     if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
     says.push_back({kPanoramaProjection, projection});
     if (!color) return says;
@@ -24,7 +21,7 @@ Attributes panorama_attributes(const Chart& picture, bool color) {
         says.push_back({"textureformat", format});
         says.push_back({"oiio:updirection", "y"});
     };
-    if (picture.projection() == Projection::cubemap && picture.padding() == 0)
+    if (picture.projection() == Projection::cubemap && picture.padding().pixels == 0)
         environment("CubeFace Environment");
     // A whole turn, and as much of the poles as whole rows can say.
     const bool is_square = picture.vertical().fov == 0 || (picture.vertical().fov == 180 && w == 2 * h);

@@ -21,16 +21,6 @@
 namespace anamorph::command {
 namespace {
 
-void print_help(const std::string& name) {
-    if (name.empty()) {
-        std::cout << operations_page();
-        return;
-    }
-    const Operation* operation = find_operation(name);
-    if (!operation) throw Error("operation", printable(name), "must be one of " + operation_names());
-    std::cout << operation_page(*operation);
-}
-
 constexpr std::string_view kOfPictures[] = {"hash", "draw", "join"};
 
 /// Becomes the program beside this one that has these subcommands. Throws Error where it cannot.
@@ -39,6 +29,21 @@ void run_pictures(char** argv) {
     execv(program.c_str(), argv);
     throw Error(printable(program) + ": " + std::strerror(errno) + " (" + argv[1] +
                 " is there with OpenImageIO alone; Debian: anamorph-openimageio)");
+}
+
+void print_help(std::string name) {
+    if (std::ranges::find(kOfPictures, name) != std::end(kOfPictures)) {
+        std::string program = "anamorph", help = "--help";
+        char* argv[] = {program.data(), name.data(), help.data(), nullptr};
+        run_pictures(argv);
+    }
+    if (name.empty()) {
+        std::cout << operations_page();
+        return;
+    }
+    const Operation* operation = find_operation(name);
+    if (!operation) throw Error("operation", printable(name), "must be one of " + operation_names());
+    std::cout << operation_page(*operation);
 }
 
 int run(int argc, char** argv) {

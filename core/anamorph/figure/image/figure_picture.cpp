@@ -129,9 +129,8 @@ struct FigurePicture::Impl {
     std::vector<int> textures = {};         ///< of the bodies: positions in FigureLook::textures, -1 for none
     std::vector<double> longest = {};       ///< of the bodies: half the longest axis in pixels
     std::vector<SolidTexture> solids = {};  ///< of the bodies, where they are colored by formulas
-    std::vector<glm::dmat3> slopes =
-        {};  ///< of the bodies, where normals are turned: heights' gradients by the unit sphere, as
-             ///< the observer has them
+    /// Of the bodies, where normals are turned: heights' gradients by the unit sphere, as the observer has them.
+    std::vector<glm::dmat3> slopes = {};
     std::unique_ptr<const VisibleSurfaces> surfaces = {};
     std::unique_ptr<const StrokePixels> strokes = {};
     double simple_error = 0;

@@ -2,7 +2,7 @@
 // Bodies as if they were cut out of a block (Peachey 1985, Perlin 1985): colors that are a function of the point in space, in the body's
 // own axes.
 //
-// Averaged is over kSide x kSide points of what a pixel shows: what is finer than that is not averaged away.
+// Colors are means over SolidLook::samples points either way of what a pixel shows: what is finer than that is not averaged away.
 #pragma once
 
 #include <array>

@@ -3,10 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 namespace anamorph::figure {
 
 /// What bodies are drawn as: their outlines; the level of Fetter's that serves; one of these; or Willmert's cylinders.
 enum class OutlineStyle : std::uint8_t { limbs, levels, boxes, contours, cylinders };
+
+/// The styles and their words.
+inline constexpr std::pair<const char*, OutlineStyle> kOutlineStyles[] = {
+    {"limbs", OutlineStyle::limbs},
+    {"levels", OutlineStyle::levels},
+    {"boxes", OutlineStyle::boxes},
+    {"contours", OutlineStyle::contours},
+    {"cylinders", OutlineStyle::cylinders}};
 
 }  // namespace anamorph::figure
