@@ -101,6 +101,7 @@ struct Padding {
     /// Around each row of faces alone, of those that follow each other there (eac), not around every face.
     bool around_rows = false;
 
+    /// So many pixels, around every face or around rows.
     Padding(double within = 0, bool rows = false) : pixels(within), around_rows(rows) {}
     bool operator==(const Padding&) const = default;
     /// "2", "rows:2".
