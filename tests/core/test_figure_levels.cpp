@@ -165,6 +165,21 @@ TEST(FigureLevels, AFigureIsADotSticksBoxesAndContoursByItsSize) {
     EXPECT_EQ(figure_levels(frame, view, 1), (std::vector{FigureLevel::contours, FigureLevel::dot}));
 }
 
+TEST(FigureLevels, ADotIsOffByWhatIsApartFromIt) {
+    // Two specks, of which the dot stands where the first one is.
+    View view;
+    view.scale = 2;
+    const auto dot_or_not = [&](double distance) {
+        const Ellipsoid speck{{0, 0, 0}, {0.1, 0.1, 0.1}, glm::dmat3(1.0)};
+        Ellipsoid other = speck;
+        other.center.x = distance;
+        return figure_levels(frame_of({speck, other}), view, 1)[0] == FigureLevel::dot;
+    };
+    EXPECT_TRUE(dot_or_not(0.39));
+    EXPECT_FALSE(dot_or_not(0.41));
+    EXPECT_FALSE(dot_or_not(20));
+}
+
 TEST(FigureLevels, FarSidesOfBoxesAndContoursAreHidden) {
     // A ball's contours across x, seen along x's side: half of each is behind it.
     View view;

@@ -173,6 +173,29 @@ Real height_at(const RealVector& p) {
     return 0.5L + 0.4L * std::sin(2 * kPi * 5 * u) * sine * sine * std::sin(kPi * 6 * v);
 }
 
+TEST(FigureRelief, SlopesAreOfATexelToEitherSide) {
+    // Waves of four texels: over two to either side there is no slope at all.
+    constexpr int kWidth = 64, kHeight = 32;
+    std::vector<float> texels;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) texels.push_back(x % 4 < 2 ? 0.0f : 1.0f);
+    const MemorySource source(packed_view(reinterpret_cast<const std::byte*>(texels.data()),
+                                          PixelType::float32, kWidth, kHeight, 1));
+    const Pyramid pyramid(source, 1, 1);
+    SceneMaker make(23);
+    // A texel is several pixels wide.
+    const Scene scene = make.scene(1, 100, 100, 1, HUGE_VAL, 200, 200);
+    FigureLook look;
+    look.antialias = false;
+    look.bump_scale = 5;
+    const std::vector<float> smooth = draw(scene, look);
+    look.bumps = true;
+    const std::vector<float> pixels = draw(scene, look, {&pyramid});
+    double moved = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) moved += std::fabs(pixels[i] - smooth[i]);
+    EXPECT_GT(moved / static_cast<double>(pixels.size()), 0.01);
+}
+
 TEST(FigureRelief, BumpsTurnNormalsAsARaisedSurfaceHasThem) {
     constexpr int kWidth = 2048, kHeight = 1024;
     std::vector<float> texels;
