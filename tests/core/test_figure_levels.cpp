@@ -104,6 +104,16 @@ TEST(FigureLevels, WhatStandsForABodyIsAsFarOffAsIsSaidAtMost) {
             }
         }
     }
+    // Far from where the observer looks depths move points as well.
+    for (const double side : {300.0, 900.0, 3000.0}) {
+        View view;
+        view.scale = 1;
+        view.eye_distance = 300;
+        const Ellipsoid ball{{side, 0.4 * side, 0}, {3, 3, 3}, glm::dmat3(1.0)};
+        const Real off = apart(points_of(ball, view), {seen(view, RealVector(ball.center))});
+        EXPECT_LE(off, dot_error(ball, view)) << side;
+        EXPECT_GT(off, 0.5 * dot_error(ball, view)) << side;
+    }
     // And it is not much less.
     for (const Real ratio : sharpest) EXPECT_GT(ratio, 0.8L);
 }

@@ -187,6 +187,7 @@ TEST(FigureRelief, SlopesAreOfATexelToEitherSide) {
     const Scene scene = make.scene(1, 100, 100, 1, HUGE_VAL, 200, 200);
     FigureLook look;
     look.antialias = false;
+    look.light = {Lighting::lambert, glm::normalize(glm::dvec3(-1, 2, -2)), 0, 0, 1};
     look.bump_scale = 5;
     const std::vector<float> smooth = draw(scene, look);
     look.bumps = true;

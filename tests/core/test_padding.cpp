@@ -101,6 +101,8 @@ TEST(ChartPadding, IsHalvedWithThePicture) {
     const Chart chart = chart_of(cubemap3x2, 101, 6), half = chart.resized(150, 100);
     EXPECT_EQ(chart.padding(), 6);
     EXPECT_NEAR(half.padding().pixels, 6 * 150.0 / 303, 1e-15);
+    const Chart film(eac, 640, 360, 0, PixelSpacing::edges, "", 1, {}, {}, Padding(4, true));
+    EXPECT_EQ(film.resized(160, 90).padding(), Padding(1, true));
     const Ray<double> ray{0.3, -0.2, 1};
     const int front = chart.piece_of(ray);
     EXPECT_NEAR(half.point(ray, front).x, chart.point(ray, front).x * 150 / 303, 1e-9);

@@ -138,6 +138,25 @@ TEST(PolygonMesh, PolygonsOfAnyShapeAreTaken) {
             EXPECT_LT(off_cubic(map, points, polygon[k], polygon[(k + 1) % polygon.size()]), 1e-8);
 }
 
+TEST(PolygonMesh, ASideMayCrossWhateverLiesInItsWay) {
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> across(5, 395), down(5, 295);
+        ControlPoints points;
+        for (int i = 0; i < 120; ++i) {
+            const double x = across(random), y = down(random);
+            points.pairs.push_back({x, y, 1.2 * x + 9 * std::sin(y / 30), 1.1 * y + 7 * std::cos(x / 40)});
+        }
+        points.pairs.push_back({1, 1, 2, 2});
+        points.pairs.push_back({399, 298, 490, 340});
+        points.pairs.push_back({2, 299, 4, 345});
+        points.polygons = {{120, 121, 122}};
+        const Scattered map(points, kTarget, kSource, 1);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_LT(off_cubic(map, points, 120 + k, 120 + (k + 1) % 3), 1e-8) << "seed " << seed;
+    }
+}
+
 std::string refusal(std::vector<ControlPoints::Pair> pairs, std::vector<std::vector<int>> polygons) {
     ControlPoints points;
     points.pairs = std::move(pairs);
