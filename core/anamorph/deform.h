@@ -6,6 +6,7 @@
 #pragma once
 
 #include "anamorph/deform/deformation.h"
+#include "anamorph/deform/deformation_entry.h"
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/deform/deformed_surface.h"
 #include "anamorph/deform/inbetween.h"

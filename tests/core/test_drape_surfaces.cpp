@@ -318,17 +318,33 @@ std::vector<Deformation> deep_bumps(unsigned seed) {
             d.extent_w = number(.15, .6);
         }
         d.side = static_cast<DeformationSide>(k / 2 % 3);
+        if (d.has_depth() && k % 4 < 2)
+            d.orientation = {number(-1, 1), number(-1, 1), number(-1, 1), number(.2, 1)};
         list.push_back(d);
     }
     return list;
+}
+/// A vector turned back by a quaternion: v - 2 w q x v / |q|^2 + 2 q x (q x v) / |q|^2.
+Vector turned_back(glm::dvec4 by, const Vector& v) {
+    const Real w = by.x;
+    const Vector q{by.y, by.z, by.w};
+    const auto cross = [](const Vector& a, const Vector& b) {
+        return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const Vector once = cross(q, v), twice = cross(q, once);
+    const Real length = w * w + q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+    Vector turned;
+    for (std::size_t k = 0; k < 3; ++k) turned[k] = v[k] + 2 * (twice[k] - w * once[k]) / length;
+    return turned;
 }
 Vector deep_point(const SurfaceShape& shape, const std::vector<Deformation>& list, Real u, Real v) {
     const Vector base = test::oracle_surface("sphere", shape, u, v);
     Vector p = base;
     for (const Deformation& d : list) {
-        const Real x = (u - d.center.x) / d.extent.x, y = (1 - v - d.center.y) / d.extent.y,
-                   z = d.extent_w > 0 ? (base[2] - d.center_w) / d.extent_w : 0,
-                   r = std::sqrt(x * x + y * y + z * z);
+        Vector from{u - d.center.x, 1 - v - d.center.y, base[2] - d.center_w};
+        if (d.has_frame()) from = turned_back(d.orientation, from);
+        const Real x = from[0] / d.extent.x, y = from[1] / d.extent.y,
+                   z = d.extent_w > 0 ? from[2] / d.extent_w : 0, r = std::sqrt(x * x + y * y + z * z);
         Real f = d.kernel == DeformationKernel::gaussian ? std::exp(-r * r)
                  : r < 1                                 ? std::pow(1 - r, Real(4)) * (4 * r + 1)
                                                          : 0;
@@ -423,6 +439,12 @@ TEST(DrapedSurface, RoundingOfDepthsCountsInThinLayers) {
         d.extent_w = 1e-6;
         const auto depth = static_cast<double>(test::oracle_surface("sphere", shape, u, v)[2]);
         d.center_w = depth + 1e-6 * (uniform(random) - 0.5);
+        if (n % 4 > 1) {
+            // A layer that is turned; its other extents are as thin, or as much larger as they may be.
+            d.orientation = {uniform(random), uniform(random), uniform(random), uniform(random) + .1};
+            d.extent = {n % 8 > 3 ? 1e-6 : 1., 1e-6};
+            d.extent_w = n % 8 > 3 ? 1e-6 : .9;
+        }
         const auto surface = make_surface(number_of("sphere"), shape, {d});
         const glm::dvec3 computed = surface->position(u, v);
         const Vector exact = deep_point(shape, {d}, u, v);

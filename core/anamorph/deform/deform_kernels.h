@@ -23,6 +23,10 @@ inline constexpr double kKernelError = 16;
 /// kernel changes by |r F'(r)| = 20 r^2 (1 - r)^3 <= 0.7 where r errs by 4.5, and its polynomial errs by 10. S errs by 3, its
 /// greatest slope, times 9 units of n . V / |V| (its direction errs by 3, of each product one, and two sums), and by 6 of its own.
 inline constexpr double kDeepError = 64;
+/// What is added to that for a bump with a frame, times the ratio K of its greatest half axis to its least. Each number of R errs by 9 (turn_of),
+/// p - c by one, products and sums by 3: x_k errs by 13 |p - c|_1 / a_k, where |p - c|_1 <= 3^(1/2) |p - c| and |p - c| <= a_max r,
+/// and by 2.5 of itself. So x errs by at most 3^(1/2) (22.6 K + 2.5) r, and F by |r F'(r)| <= 0.74 times that: 29 K + 3.3.
+inline constexpr double kFrameError = 32;
 
 inline constexpr int kGridBlock = 32;  ///< columns that are culled together; tables are padded to it
 inline constexpr int kGridRows = 2;    ///< rows drawn together; rows of sums are padded to it
@@ -84,6 +88,10 @@ struct PointTerm {
     bool has_depth = false, has_side = false;
     double center_w = 0, inverse_extent_w = 0;  ///< where has_depth
     double direction[3] = {};                   ///< side_direction() where has_side
+    bool has_frame = false;
+    double turn[3][3] =
+        {};  ///< R where has_frame: center, center_w and the inverse extents are then along its columns
+    double box[2] = {};  ///< 1 / how far r = 1 reaches along u and v, where has_frame
 };
 /// Points: their parameters, and where terms have depth or side their depths w, which may be infinite, and unit normals; w is null
 /// where no term has either.

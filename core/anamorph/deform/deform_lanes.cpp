@@ -358,6 +358,35 @@ HWY_INLINE const L& ValueOf(const Slope& a) {
     return a.value;
 }
 
+/// A bump with depth or side at the points of a vector: its three ways, each in extents, and what each way's kernel is.
+struct DeepWays {
+    AxisKernel kernel[3];
+    L x[3];
+    L::M inside;
+
+    HWY_INLINE DeepWays(const PointTerm& term, const TermPoints& points, std::size_t i)
+        : kernel{{term.center[0], term.inverse_extent[0], term.reach, term.gaussian},
+                 {term.center[1], term.inverse_extent[1], term.reach, term.gaussian},
+                 {term.center_w, term.inverse_extent_w, term.reach, term.gaussian}} {
+        const L u = L::load(points.u + i), v = L::load(points.v + i);
+        if (term.has_frame) {
+            const L from[3] = {u - L(term.center[0]), v - L(term.center[1]),
+                               L::load(points.w + i) - L(term.center_w)};
+            for (int k = 0; k < 3; ++k)
+                x[k] = (from[0] * L(term.turn[0][k]) + from[1] * L(term.turn[1][k]) +
+                        from[2] * L(term.turn[2][k])) *
+                       L(kernel[k].inverse_extent);
+        } else {
+            x[0] = DistanceOf(kernel[0], u);
+            x[1] = DistanceOf(kernel[1], v);
+            x[2] = term.has_depth ? DistanceOf(kernel[2], L::load(points.w + i)) : L(0.0);
+        }
+        inside = {hn::And(hn::Le(abs(x[0]).v, hn::Set(D(), term.reach)),
+                          hn::Le(abs(x[1]).v, hn::Set(D(), term.reach)))};
+        if (term.has_depth) inside = both(inside, L::M{hn::Le(abs(x[2]).v, hn::Set(D(), term.reach))});
+    }
+};
+
 /// Adds V dF/dx of a term with depth or side; x: u, v, w and the normal's coordinates. f: F by three ways; share: S and its slope.
 HWY_INLINE void AddDeepSlopes(const PointTerm& term, const Slope (&ways)[3], const Slope& share,
                               L (&sum)[kDeepSlopes]) {
@@ -373,6 +402,11 @@ HWY_INLINE void AddDeepSlopes(const PointTerm& term, const Slope (&ways)[3], con
         value = f.value;
         for (int k = 0; k < 3; ++k) by[k] = f.by * ways[k].by;
     }
+    if (term.has_frame) {
+        const L own[3] = {by[0], by[1], by[2]};
+        for (int j = 0; j < 3; ++j)
+            by[j] = own[0] * L(term.turn[j][0]) + own[1] * L(term.turn[j][1]) + own[2] * L(term.turn[j][2]);
+    }
     for (int k = 0; k < 3; ++k) by[k] = by[k] * share.value;
     for (int k = 0; k < 3; ++k) by[3 + k] = value * share.by * L(term.direction[k]);
     for (int k = 0; k < 6; ++k)
@@ -383,14 +417,8 @@ HWY_INLINE void AddDeepSlopes(const PointTerm& term, const Slope (&ways)[3], con
 template <bool kSums, bool kSlopes>
 HWY_INLINE bool AddDeepTerm(const PointTerm& term, const TermPoints& points, std::size_t i, VI (&sum)[3],
                             L (&slope)[kDeepSlopes]) {
-    const AtPoints at(term, L::load(points.u + i), L::load(points.v + i));
-    const AxisKernel depth{term.center_w, term.inverse_extent_w, term.reach, term.gaussian};
-    L::M inside = at.inside;
-    L z(0.0);
-    if (term.has_depth) {
-        z = DistanceOf(depth, L::load(points.w + i));
-        inside = both(inside, L::M{hn::Le(abs(z).v, hn::Set(D(), term.reach))});
-    }
+    const DeepWays at(term, points, i);
+    const L::M inside = at.inside;
     if (hn::AllFalse(D(), inside.m)) return false;
     Slope share(1.0);
     if (term.has_side) {
@@ -400,8 +428,9 @@ HWY_INLINE bool AddDeepTerm(const PointTerm& term, const TermPoints& points, std
     }
     // What is not inside gets nothing, neither a displacement nor a slope.
     share = ZeroUnless(inside, share);
-    const Slope ways[3] = {FactorOf<Slope>(at.across, at.x), FactorOf<Slope>(at.down, at.y),
-                           term.has_depth ? FactorOf<Slope>(depth, z) : Slope(term.gaussian ? 1.0 : 0.0)};
+    const Slope ways[3] = {
+        FactorOf<Slope>(at.kernel[0], at.x[0]), FactorOf<Slope>(at.kernel[1], at.x[1]),
+        term.has_depth ? FactorOf<Slope>(at.kernel[2], at.x[2]) : Slope(term.gaussian ? 1.0 : 0.0)};
     if constexpr (kSums) {
         const L f = term.gaussian ? ways[0].value * ways[1].value * ways[2].value
                                   : wendland_of(ways[0].value + ways[1].value + ways[2].value);

@@ -15,6 +15,29 @@ void check_finite(const char* name, double value) {
     if (!std::isfinite(value)) throw Error(name, shortest(value), "must be a finite number");
 }
 
+double largest_of(const glm::dvec4& q) {
+    return std::max({std::fabs(q.x), std::fabs(q.y), std::fabs(q.z), std::fabs(q.w)});
+}
+
+void check_frame(const Deformation& d) {
+    constexpr double kLeast = 1e-100, kMost = 1e100;
+    for (int c = 0; c < 4; ++c) check_finite("orientation", d.orientation[c]);
+    const double largest = largest_of(d.orientation);
+    if (!(largest >= kLeast && largest <= kMost))
+        throw Error("orientation", shortest(largest),
+                    "the largest number must have a magnitude from 1e-100 to 1e100");
+    if (!d.has_frame()) return;
+    if (!d.has_depth())
+        throw Error(
+            "orientation",
+            shortest(d.orientation.y) + "," + shortest(d.orientation.z) + "," + shortest(d.orientation.w),
+            "must be without a turn (1, 0, 0, 0), or the extent must have a third number");
+    const auto [least, most] = std::minmax({d.extent.x, d.extent.y, d.extent_w});
+    if (!(most / least <= kMostExtentRatio))
+        throw Error("extent", shortest(most),
+                    "with an orientation, must be at most 2^20 times the least, " + shortest(least));
+}
+
 std::optional<Deformation> effect(const Deformation& d) {
     if (!d.enabled || d.vector == glm::dvec3(0.0)) return std::nullopt;
     return d;
@@ -22,7 +45,8 @@ std::optional<Deformation> effect(const Deformation& d) {
 
 auto key(const Deformation& d) {
     return std::tuple(d.center.x, d.center.y, d.extent.x, d.extent.y, d.vector.x, d.vector.y, d.vector.z,
-                      d.kernel, d.center_w, d.extent_w, d.side);
+                      d.kernel, d.center_w, d.extent_w, d.side, d.orientation.x, d.orientation.y,
+                      d.orientation.z, d.orientation.w);
 }
 
 /// What moves the surface, sorted.
@@ -44,6 +68,38 @@ void check_deformation(const Deformation& d) {
     kExtentRow.check(d.extent.x);
     kExtentRow.check(d.extent.y);
     if (d.has_depth()) kExtentRow.check(d.extent_w);
+    check_frame(d);
+}
+
+glm::dvec4 unit_scaled(glm::dvec4 q) {
+    const int exponent = std::ilogb(largest_of(q));
+    return {std::ldexp(q.x, -exponent), std::ldexp(q.y, -exponent), std::ldexp(q.z, -exponent),
+            std::ldexp(q.w, -exponent)};
+}
+
+glm::dvec3 framed_reach(const Deformation& d) {
+    const auto turn = turn_of<double>(d);
+    const double extent[3] = {d.extent.x, d.extent.y, d.extent_w};
+    glm::dvec3 reach(0.0);
+    for (int j = 0; j < 3; ++j)
+        for (std::size_t k = 0; k < 3; ++k)
+            reach[j] += std::fabs(turn[static_cast<std::size_t>(j)][k]) * extent[k];
+    // With |p - c|_1 at most about r (S_u + S_v + S_w), x errs by 13 units of 2^-53 of that over its extent
+    // (deform_kernels.h), so that a point whose x is found within may be off along u by 23 of them; what is rounded here is less.
+    return reach + glm::dvec3(0x1p-44 * (reach.x + reach.y + reach.z));
+}
+
+glm::dvec4 frame_at(glm::dvec3 normal) {
+    const double largest = std::max({std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)});
+    if (!(largest > 0) || !std::isfinite(largest))
+        throw Error("normal", shortest(normal.x) + "," + shortest(normal.y) + "," + shortest(normal.z),
+                    "must have a direction");
+    const glm::dvec3 n = glm::normalize(normal / largest);
+    // Half the way from w to n: (1 + n_w, w x n). Straight down, any axis of the plane will do.
+    const double aside = n.x * n.x + n.y * n.y;
+    if (n.z < 0 && !(aside > 0)) return {0, 1, 0, 0};
+    const glm::dvec4 q(n.z < 0 ? aside / (1 - n.z) : 1 + n.z, -n.y, n.x, 0);
+    return q / glm::length(q);
 }
 
 bool needs_depth(const std::vector<Deformation>& list) {

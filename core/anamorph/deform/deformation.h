@@ -12,6 +12,11 @@
 // a bump reaches as far in depth as along the plane, and moves one of two parts of a surface that lie over each
 // other. Without a_w the third term is missing: a bump reaches to any depth.
 //
+// A bump with depth may have a frame of its own, the turn R of a quaternion q = (q_w, q_x, q_y, q_z) of any length but 0: with
+//     x = R^T (p - c),   r^2 = (x_u / a_u)^2 + (x_v / a_v)^2 + (x_w / a_w)^2
+// its extents are along R's columns, the directions in (u, v, w) that R turns u, v and w into. frame_at() finds the turn that lays w
+// along the normal at a point of a surface.
+//
 // A bump may move one side alone. With the unit normal n of the undeformed surface, V F S moves the point, where
 //     S = H(2 n . V / |V|) of the front, H(-2 n . V / |V|) of the back,
 //     H(t) = 0 up to t = 0, t^2 (3 - 2 t) up to t = 1, then 1:
@@ -20,10 +25,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,7 +61,10 @@ struct Deformation {
     double center_w = 0;  ///< c_w
     double extent_w = 0;  ///< a_w; 0: none
     DeformationSide side = DeformationSide::both;
+    glm::dvec4 orientation{1, 0, 0, 0};  ///< q; of bumps with depth alone
 
+    /// Is q another turn than none?
+    bool has_frame() const { return orientation.y != 0 || orientation.z != 0 || orientation.w != 0; }
     bool has_depth() const { return extent_w != 0; }
     bool has_side() const { return side != DeformationSide::both; }
     /// Does the bump need no more of a point than (u, v)?
@@ -67,8 +77,12 @@ bool needs_depth(const std::vector<Deformation>& list);
 /// Is any bump of a list that moves anything of one side?
 bool needs_normals(const std::vector<Deformation>& list);
 
+/// The greatest ratio of two half axes of a bump with a frame.
+inline constexpr double kMostExtentRatio = 0x1p20;
+
 /// Checks a bump. Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow;
-/// extent_w may be 0.
+/// extent_w may be 0. Bumps with a frame need an extent_w, a q whose largest number has a magnitude from 1e-100 to 1e100, and
+/// extents that are no more than kMostExtentRatio apart.
 void check_deformation(const Deformation& deformation);
 
 /// exp(-a) for a >= 0. Numbers that have a faster way overload it.
@@ -78,6 +92,9 @@ T exp_of_minus(const T& a) {
 }
 
 #include "anamorph/deform/deformation_formula.h"
+
+/// q divided by the power of 2 that makes its largest number one from 1 to 2.
+glm::dvec4 unit_scaled(glm::dvec4 q);
 
 /// V / |V| of the front, -V / |V| of the back, (0, 0, 0) of V = 0: what a normal is multiplied by (facing).
 template <class T>
@@ -93,6 +110,41 @@ Triple<T> side_direction(const Deformation& d) {
     const T length = sqrt(dot_product(v, v));
     return {v.x / length, v.y / length, v.z / length};
 }
+
+/// R of a bump: what R[j][k] of (u, v, w)[j] its k-th own direction has. Its columns are of length 1 and at right angles, all but for
+/// rounding: each number errs by at most 9 units of 2^-53: sums
+/// of four products by 4 of the sum of their magnitudes, above and below, and the quotient by one.
+template <class T>
+std::array<std::array<T, 3>, 3> turn_of(const Deformation& d) {
+    // In units of the largest number, which is a power of 2 off at most.
+    const glm::dvec4 q = unit_scaled(d.orientation);
+    const T w(q.x), x(q.y), y(q.z), z(q.w);
+    const T xx = square(x), yy = square(y), zz = square(z), ww = square(w), length = ww + xx + yy + zz;
+    const auto off = [&](const T& a, const T& b) { return T(T(2.0) * (a + b) / length); };
+    return {{{T((ww + xx - yy - zz) / length), off(x * y, -(w * z)), off(x * z, w * y)},
+             {off(x * y, w * z), T((ww - xx + yy - zz) / length), off(y * z, -(w * x))},
+             {off(x * z, -(w * y)), off(y * z, w * x), T((ww - xx - yy + zz) / length)}}};
+}
+
+/// x of a bump with a frame, in extents.
+template <class T>
+std::array<T, 3> in_own_frame(const Deformation& d, const T& u, const T& v, const T& w) {
+    const std::array<std::array<T, 3>, 3> turn = turn_of<T>(d);
+    const T from[3] = {u - T(d.center.x), v - T(d.center.y), w - T(d.center_w)};
+    const double extent[3] = {d.extent.x, d.extent.y, d.extent_w};
+    const auto along = [&](std::size_t k) {
+        return T((turn[0][k] * from[0] + turn[1][k] * from[1] + turn[2][k] * from[2]) *
+                 (T(1.0) / T(extent[k])));
+    };
+    return {along(0), along(1), along(2)};
+}
+
+/// How far from its centre a bump with a frame reaches along u, v and w, where it reaches r = 1; rounded up.
+glm::dvec3 framed_reach(const Deformation& d);
+
+/// The turn q, of length 1, that lays w along a normal, which need not be of length 1, by the shortest way. Throws Error where the
+/// normal has no direction.
+glm::dvec4 frame_at(glm::dvec3 normal);
 
 /// F at x = (u - c_u) / a_u and y = (v - c_v) / a_v; it is 1 at the centre.
 template <class T>
@@ -111,9 +163,15 @@ T influence(const Deformation& d, const T& u, const T& v) {
 /// F(p, c, a) S at p = (u, v, w), exactly. facing: the product of the unit normal and side_direction(d).
 template <class T>
 T influence(const Deformation& d, const T& u, const T& v, const T& w, const T& facing) {
-    const T x = (u - T(d.center.x)) * T(1 / d.extent.x), y = (v - T(d.center.y)) * T(1 / d.extent.y);
-    T squared = square(x) + square(y);
-    if (d.has_depth()) squared = squared + square(T((w - T(d.center_w)) * T(1 / d.extent_w)));
+    T squared(0.0);
+    if (d.has_frame()) {
+        for (const T& x : in_own_frame(d, u, v, w)) squared = squared + square(x);
+    } else {
+        const T x = (u - T(d.center.x)) * T(1 / d.extent.x), y = (v - T(d.center.y)) * T(1 / d.extent.y);
+        squared = square(x) + square(y);
+    }
+    if (d.has_depth() && !d.has_frame())
+        squared = squared + square(T((w - T(d.center_w)) * T(1 / d.extent_w)));
     const T f = d.kernel == DeformationKernel::gaussian ? gaussian_of(squared) : wendland_of(squared);
     return d.has_side() ? T(f * side_share(facing)) : f;
 }

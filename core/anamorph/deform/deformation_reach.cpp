@@ -37,8 +37,9 @@ DeformationReach::Reached DeformationReach::reached_by(const Deformation& d) {
     // A little more, for what is rounded here.
     const double reach =
         1.001 * (d.kernel == DeformationKernel::gaussian ? std::sqrt(squared_reach(d)) : 1.0);
-    const double across = reach * d.extent.x + 1e-12 * std::fabs(d.center.x),
-                 down = reach * d.extent.y + 1e-12 * std::fabs(d.center.y);
+    const glm::dvec2 half = d.has_frame() ? glm::dvec2(framed_reach(d)) : d.extent;
+    const double across = reach * half.x + 1e-12 * std::fabs(d.center.x),
+                 down = reach * half.y + 1e-12 * std::fabs(d.center.y);
     return {d.center.x - across, d.center.y - down, d.center.x + across, d.center.y + down};
 }
 

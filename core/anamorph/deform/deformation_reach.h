@@ -8,7 +8,8 @@
 // since those are at most (2 r^2 + 1) / m^2 times e^(-r^2).
 //
 // With depth or side, F is never larger, but its derivatives also have those of depth and normal, of which nothing is known here:
-// such a Gaussian reaches everything, while Wendland's kernel still is 0 beyond r = 1 of u and v alone.
+// such a Gaussian reaches everything, while Wendland's kernel still is 0 beyond r = 1 of u and v alone, with a frame
+// beyond the box of its ellipsoid.
 #pragma once
 
 #include <cstdint>

@@ -194,6 +194,19 @@ double DisplacementSum::reach(DeformationKernel kernel) const {
     return std::sqrt(-std::log(m_options.cutoff)) * (1 + 0x1p-48);
 }
 
+namespace {
+
+/// What the errors of frames are counted in, times V: whole numbers of it, so that what was added and taken away leaves no trace.
+constexpr double kFrameUnit = 0x1p-33;
+
+/// The error of F by a bump's frame, in kFrameUnit.
+double frame_error_of(const Deformation& d) {
+    const auto [least, most] = std::minmax({d.extent.x, d.extent.y, d.extent_w});
+    return simd::kFrameError * (most / least + 1) * (0x1p-53 / kFrameUnit);
+}
+
+}  // namespace
+
 void DisplacementSum::add(Totals& totals, const Deformation& d, int sign) const {
     for (int c = 0; c < 3; ++c) {
         const double units = std::ceil(std::fabs(d.vector[c]) / m_options.resolution);
@@ -211,6 +224,12 @@ void DisplacementSum::add(Totals& totals, const Deformation& d, int sign) const 
         totals.units[c] += whole;
         if (d.kernel == DeformationKernel::gaussian) totals.gaussian[c] += whole;
         if (!d.is_plain()) totals.deep[c] += whole;
+        if (!d.has_frame()) continue;
+        const double framed = std::ceil(units * frame_error_of(d));
+        if (static_cast<double>(totals.framed[c]) + sign * framed >= kMostTotal)
+            throw Error("vector", shortest(d.vector[c]),
+                        "with extents so far apart: must be smaller, or without an orientation");
+        totals.framed[c] += static_cast<std::int64_t>(framed) * sign;
     }
     totals.count += sign;
 }
@@ -231,7 +250,8 @@ double DisplacementSum::error_bound() const {
     for (int c = 0; c < 3; ++c)
         most = std::max(most, static_cast<double>(m_totals.gaussian[c]) * m_options.cutoff +
                                   static_cast<double>(m_totals.units[c]) * simd::kKernelError * 0x1p-53 +
-                                  static_cast<double>(m_totals.deep[c]) * simd::kDeepError * 0x1p-53);
+                                  static_cast<double>(m_totals.deep[c]) * simd::kDeepError * 0x1p-53 +
+                                  static_cast<double>(m_totals.framed[c]) * kFrameUnit);
     return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
 }
 
@@ -240,7 +260,8 @@ double DisplacementSum::most() const {
     for (int c = 0; c < 3; ++c)
         most =
             std::max(most, static_cast<double>(m_totals.units[c]) * (1 + 2 * simd::kKernelError * 0x1p-53) +
-                               static_cast<double>(m_totals.deep[c]) * (2 * simd::kDeepError * 0x1p-53));
+                               static_cast<double>(m_totals.deep[c]) * (2 * simd::kDeepError * 0x1p-53) +
+                               2 * static_cast<double>(m_totals.framed[c]) * kFrameUnit);
     return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
 }
 
@@ -510,6 +531,14 @@ simd::PointTerm point_term(const Term& from, const DisplacementSum& sum) {
     }
     const Triple<double> direction = side_direction<double>(d);
     if (term.has_side) std::ranges::copy(std::array{direction.x, direction.y, direction.z}, term.direction);
+    term.has_frame = d.has_frame();
+    if (term.has_frame) {
+        const auto turn = turn_of<double>(d);
+        for (std::size_t j = 0; j < 3; ++j) std::ranges::copy(turn[j], term.turn[j]);
+        const glm::dvec3 reach = framed_reach(d);
+        term.box[0] = 1 / reach.x;
+        term.box[1] = 1 / reach.y;
+    }
     return term;
 }
 std::vector<simd::PointTerm> point_terms(std::span<const DeformationChange> changes,
@@ -522,8 +551,9 @@ std::vector<simd::PointTerm> point_terms(std::span<const DeformationChange> chan
 /// Does a term move points with coordinates from `least` to `most`? The arithmetic of simd::deform_points,
 /// monotonic in the coordinate.
 bool reaches(const simd::PointTerm& term, int axis, double least, double most) {
-    return (most - term.center[axis]) * term.inverse_extent[axis] >= -term.reach &&
-           (least - term.center[axis]) * term.inverse_extent[axis] <= term.reach;
+    const double inverse = term.has_frame ? term.box[axis] : term.inverse_extent[axis];
+    return (most - term.center[axis]) * inverse >= -term.reach &&
+           (least - term.center[axis]) * inverse <= term.reach;
 }
 
 /// The derivatives at `count` points, a multiple of simd::kPointBlock, and how many parameters they are by.

@@ -8,7 +8,8 @@
 //
 // Errors. A Gaussian is cut off where it is certain to be below `cutoff`: a point whose distance from the
 // centre, along u or along v, is more than sqrt(-log(cutoff)) extents is not moved. A contribution is off by
-// at most half a resolution and by 16 2^-53 of V, 64 where it has depth or side (deform/deform_kernels.h). error_bound() is the
+// at most half a resolution and by 16 2^-53 of V, 64 where it has depth or side, and with a frame by 32 (K + 1) more, K the ratio of its
+// greatest half axis to its least (deform/deform_kernels.h). error_bound() is the
 // sum of all this. Along w a Gaussian is cut off as along u and v.
 // Range: a component of V is less than 2^50 resolutions, their magnitudes together less than 2^62.
 //
@@ -62,6 +63,7 @@ class DisplacementSum {
         std::int64_t units[3] = {};     ///< magnitudes of V
         std::int64_t gaussian[3] = {};  ///< magnitudes of V of the Gaussians
         std::int64_t deep[3] = {};      ///< magnitudes of V of those with depth or side
+        std::int64_t framed[3] = {};    ///< those of V of those with a frame, times what it errs by
         std::int64_t count = 0;
     };
     void add(Totals& totals, const Deformation& deformation, int sign) const;

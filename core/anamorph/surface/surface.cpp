@@ -102,15 +102,13 @@ IntervalJet composed(const Interval& f, const Interval& slope, const Interval& b
     return r;
 }
 
-/// Encloses Wendland's kernel of three ways as wendland_range() does that of two: F_x = -20 (1 - r)^3 x and
-/// F_xz = 60 (1 - r)^2 x z / r, with x = (u - c_u) / a_u, y likewise, and z any function of u and v.
-IntervalJet deep_wendland_range(const Deformation& d, const Interval& u, const Interval& v,
-                                const IntervalJet& z) {
-    const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
-    const std::array<Interval, 3> at = {(u - d.center.x) * a, (v - d.center.y) * b, z.c[0]};
+/// Encloses Wendland's kernel of three ways, any functions of u and v, as the other wendland_range() does that of two:
+/// F_x = -20 (1 - r)^3 x and F_xz = 60 (1 - r)^2 x z / r.
+IntervalJet wendland_range(const std::array<IntervalJet, 3>& ways) {
+    const std::array<Interval, 3> at = {ways[0].c[0], ways[1].c[0], ways[2].c[0]};
     // The derivatives of x, y and z by u and v.
     const std::array<std::array<Interval, 2>, 3> by = {
-        {{a, Interval(0)}, {Interval(0), b}, {z.c[1], z.c[2]}}};
+        {{ways[0].c[1], ways[0].c[2]}, {ways[1].c[1], ways[1].c[2]}, {ways[2].c[1], ways[2].c[2]}}};
     const Interval r = min(sqrt(square(at[0]) + square(at[1]) + square(at[2])), Interval(1)),
                    rest = max(1.0 - r, Interval(0));
     const Interval squared = square(rest), cubed = squared * rest;
@@ -130,11 +128,11 @@ IntervalJet deep_wendland_range(const Deformation& d, const Interval& u, const I
     const std::array<Interval, 3> first = {cubed * at[0] * -20.0, cubed * at[1] * -20.0,
                                            cubed * at[2] * -20.0};
     IntervalJet f(square(squared) * (r * 4.0 + 1.0));
-    f.c[1] = first[0] * a + first[2] * z.c[1];
-    f.c[2] = first[1] * b + first[2] * z.c[2];
-    f.c[3] = along(0, 0) * 0.5 + first[2] * z.c[3];
-    f.c[4] = along(0, 1) + first[2] * z.c[4];
-    f.c[5] = along(1, 1) * 0.5 + first[2] * z.c[5];
+    f.c[3] = along(0, 0) * 0.5;
+    f.c[4] = along(0, 1);
+    f.c[5] = along(1, 1) * 0.5;
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t c = 1; c < 6; ++c) f.c[c] = f.c[c] + first[k] * ways[k].c[c];
     return f;
 }
 
@@ -151,6 +149,28 @@ IntervalJet side_range(const IntervalJet& facing) {
     if (t.hi < 0 || t.lo > 1) bend = rise = Interval(0);
     // By the chain rule with t = 2 n . V / |V|.
     return composed({value(within.lo).lo, value(within.hi).hi}, rise * 2.0, bend * 2.0, facing);
+}
+
+/// Encloses the kernel of a bump with a frame: of three ways x, each a function of u and v.
+IntervalJet framed_range(const Deformation& d, const IntervalJet& u, const IntervalJet& v,
+                         const IntervalJet& w) {
+    const auto turn = turn_of<Interval>(d);
+    const IntervalJet from[3] = {u - IntervalJet(Interval(d.center.x)), v - IntervalJet(Interval(d.center.y)),
+                                 w - IntervalJet(Interval(d.center_w))};
+    const double extent[3] = {d.extent.x, d.extent.y, d.extent_w};
+    std::array<IntervalJet, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) {
+        IntervalJet sum = from[0] * IntervalJet(turn[0][k]);
+        for (std::size_t j = 1; j < 3; ++j) sum = sum + from[j] * IntervalJet(turn[j][k]);
+        x[k] = sum * IntervalJet(Interval(1) / Interval(extent[k]));
+    }
+    if (d.kernel == DeformationKernel::wendland_c2) return wendland_range(x);
+    IntervalJet f(Interval(1));
+    for (const IntervalJet& way : x) {
+        const GaussianRange range(way.c[0]);
+        f = f * composed(range.value, range.slope, range.bend, way);
+    }
+    return f;
 }
 
 /// influence(), and what encloses it.
@@ -170,12 +190,16 @@ T influence_of(const Deformation& d, const T& u, const T& v, const T& w, const T
 }
 IntervalJet influence_of(const Deformation& d, const IntervalJet& u, const IntervalJet& v,
                          const IntervalJet& w, const IntervalJet& facing) {
-    IntervalJet f = influence_of(d, u, v);
-    if (d.has_depth()) {
+    IntervalJet f = d.has_frame() ? framed_range(d, u, v, w) : influence_of(d, u, v);
+    if (d.has_depth() && !d.has_frame()) {
         const IntervalJet z =
             (w - IntervalJet(Interval(d.center_w))) * IntervalJet(Interval(1) / Interval(d.extent_w));
         if (d.kernel == DeformationKernel::wendland_c2) {
-            f = deep_wendland_range(d, u.value(), v.value(), z);
+            const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
+            IntervalJet x((u.value() - d.center.x) * a), y((v.value() - d.center.y) * b);
+            x.c[1] = a;
+            y.c[2] = b;
+            f = wendland_range({x, y, z});
         } else {
             const GaussianRange deep(z.c[0]);
             f = f * composed(deep.value, deep.slope, deep.bend, z);
@@ -529,6 +553,19 @@ class SummedSurface final : public DrapedSurface {
         if (near < m_deformations.size()) add_unknown(p, m_reach.far());
         return p;
     }
+    /// How much of F is lost, in units of 2^-53, where it has a frame: x errs by 3^(1/2) (22.6 K + 2.5) r units (kFrameError), so r^2 by
+    /// (79 K + 9) r^2 and a Gaussian by as much of itself, and by 16 (r^2 + 1) of what exp and the sum of squares lose; Wendland's kernel by
+    /// |r F'| <= 0.7, 32 (K + 1), and by 16. A depth that is off moves x by so much over the least extent, and F by 2.2 times that.
+    static double lost_in_frame(const Deformation& d, double u, double v, const Interval& w) {
+        double squared = 0;
+        for (const double x : in_own_frame(d, u, v, w.lo)) squared += x * x;
+        const auto [least, most] = std::minmax({d.extent.x, d.extent.y, d.extent_w});
+        const double ratio = most / least, f = influence(d, u, v, w.lo, 1.0);
+        const double kernel = d.kernel == DeformationKernel::gaussian
+                                  ? (f > 0 ? f * ((80 * ratio + 26) * (squared + 1)) : 0)
+                                  : 32 * (ratio + 1) + 16;
+        return 1.01 * (kernel + 2.2 * 0x1p53 * (w.hi - w.lo) / least);
+    }
     /// How far point() in double may be from the exact point, for rounding() alone: where deformations are concerned, the
     /// point itself is not known. x and y of a kernel are off by 3 units of 2^-53 of themselves, r^2 by 8, and, with what
     /// exp or the polynomial lose, F by less than 16 (r^2 + 1) F; each sum, by one unit of what is added up. With depth or side, F is
@@ -543,7 +580,11 @@ class SummedSurface final : public DrapedSurface {
             const double x = (u.lo - d.center.x) / d.extent.x, y = (v.lo - d.center.y) / d.extent.y;
             glm::dvec3 moved = glm::abs(d.vector) * kernel_value(d.kernel, x, y);
             double square_of_z = 0;
-            if (d.has_depth()) {
+            if (d.has_frame()) {
+                moved = glm::abs(d.vector) * influence(d, u.lo, v.lo, seen.w.lo, 1.0);
+                lost += glm::abs(d.vector) * lost_in_frame(d, u.lo, v.lo, seen.w);
+            }
+            if (d.has_depth() && !d.has_frame()) {
                 const double z = (seen.w.lo - d.center_w) / d.extent_w;
                 // Of a side, as if it were all there.
                 const double f = influence(d, u.lo, v.lo, seen.w.lo, 1.0);
@@ -556,7 +597,8 @@ class SummedSurface final : public DrapedSurface {
                 lost += moved * (64 + 3 * 0x1p53 * (facing.hi - facing.lo));
             }
             added += moved;
-            lost += added + moved * (16 * (x * x + y * y + square_of_z + 1));
+            lost += added;
+            if (!d.has_frame()) lost += moved * (16 * (x * x + y * y + square_of_z + 1));
         });
         add_unknown(p, lost * 0x1p-53 + m_reach.far());
         return p;
@@ -599,6 +641,8 @@ std::vector<Deformation> enabled(std::vector<Deformation> list) {
     for (Deformation& d : list) {
         check_deformation(d);
         d.center.y = 1 - d.center.y;
+        // A mirror image of the frame: its own v counts the other way as well, of which r^2 knows nothing.
+        d.orientation = {d.orientation.x, -d.orientation.y, d.orientation.z, -d.orientation.w};
     }
     std::erase_if(list, [](const Deformation& d) { return !d.enabled; });
     return list;
