@@ -172,7 +172,8 @@ std::vector<std::vector<glm::dvec2>> paths_of(const Deformation& d) {
 
 }  // namespace
 
-void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOptions& options,
+void draw_overlay(const std::vector<Deformation>& list, const std::vector<std::size_t>& entries,
+                  const anamorph::DeformOptions& options,
                   const std::optional<anamorph::FormulaDisplacement>& formula,
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay) {
@@ -191,7 +192,7 @@ void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOp
             const auto finish = [&] {
                 if (line.size() >= 2) {
                     lines->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
-                    positions->InsertNextValue(static_cast<int>(k));
+                    positions->InsertNextValue(static_cast<int>(entries[k]));
                     enabled->InsertNextValue(list[k].enabled ? 1 : 0);
                 }
                 line.clear();
@@ -291,6 +292,90 @@ void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<Def
     constexpr double kNear = 0.25;
     const glm::dvec2 found = off(meshes[corner.mesh]->parameters()[corner.point]);
     if (glm::dot(found, found) < kNear) heights[1] = height_of(corner.mesh, corner.point);
+}
+
+namespace {
+
+/// A place on a triangle of a mesh, by the shares of its corners.
+struct TrianglePlace {
+    std::size_t mesh = 0;
+    std::array<vtkIdType, 3> corners{};
+    glm::dvec3 shares{0.0};
+    double depth = 0, apart = std::numeric_limits<double>::infinity();
+};
+
+glm::dvec3 point_of(vtkPointSet* mesh, vtkIdType id) {
+    glm::dvec3 p;
+    mesh->GetPoint(id, &p.x);
+    return p;
+}
+
+TrianglePlace place_over(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                         const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                         const anamorph::ParameterPlane& plane) {
+    TrianglePlace best;
+    for (std::size_t m = 0; m < std::min(meshes.size(), undeformed.size()); ++m) {
+        if (!meshes[m]) continue;
+        const std::vector<glm::dvec2>& parameters = meshes[m]->parameters();
+        const auto offer = [&](const std::array<vtkIdType, 3>& ids) {
+            const auto at = [&](std::size_t i) { return parameters[static_cast<std::size_t>(ids[i])]; };
+            const glm::dvec2 a = at(1) - at(0), b = at(2) - at(0), c = bump.center - at(0);
+            const double area = a.x * b.y - a.y * b.x;
+            const double x = (c.x * b.y - c.y * b.x) / area, y = (a.x * c.y - a.y * c.x) / area;
+            constexpr double kRounding = 1e-9;
+            if (!(x >= -kRounding && y >= -kRounding && x + y <= 1 + kRounding)) return;
+            const glm::dvec3 shares(1 - x - y, x, y);
+            double depth = 0;
+            for (int i = 0; i < 3; ++i)
+                depth += shares[i] * plane.depth(point_of(undeformed[m], ids[static_cast<std::size_t>(i)]));
+            if (const double apart = std::fabs(depth - bump.center_w); apart < best.apart)
+                best = {m, ids, shares, depth, apart};
+        };
+        for_each_surface_cell(undeformed[m], [&](vtkIdType count, const vtkIdType* p) {
+            for (vtkIdType i = 1; i + 1 < count; ++i) offer({p[0], p[i], p[i + 1]});
+        });
+    }
+    return best;
+}
+
+/// The sum of the normals of the cells at each corner, each as long as the cell's area, in the shares of the corners.
+glm::dvec3 normal_at(const TrianglePlace& place, vtkPointSet* mesh) {
+    std::array<glm::dvec3, 3> normals{};
+    for_each_surface_cell(mesh, [&](vtkIdType count, const vtkIdType* p) {
+        glm::dvec3 area(0.0);
+        for (vtkIdType i = 1; i + 1 < count; ++i)
+            area += glm::cross(point_of(mesh, p[i]) - point_of(mesh, p[0]),
+                               point_of(mesh, p[i + 1]) - point_of(mesh, p[0]));
+        for (std::size_t k = 0; k < 3; ++k)
+            if (std::find(p, p + count, place.corners[k]) != p + count) normals[k] += area;
+    });
+    glm::dvec3 sum(0.0);
+    for (std::size_t k = 0; k < 3; ++k)
+        if (const double length = glm::length(normals[k]); length > 0)
+            sum += place.shares[static_cast<int>(k)] / length * normals[k];
+    return sum;
+}
+
+}  // namespace
+
+void find_anchor(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                 const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                 const anamorph::ParameterPlane& plane, double (&anchor)[9]) {
+    const TrianglePlace place = place_over(bump, meshes, undeformed, plane);
+    if (!std::isfinite(place.apart)) return;
+    glm::dvec3 normal = normal_at(place, undeformed[place.mesh]);
+    if (!(glm::length(normal) > 0)) return;
+    normal = glm::normalize(normal);
+    // A plane of space with this normal is one of (u, v, w) with that of its products with where u, v and w go.
+    const glm::dvec3 in_parameters(glm::dot(normal, plane.axis_u()), glm::dot(normal, plane.axis_v()),
+                                   glm::dot(normal, plane.normal()));
+    const glm::dvec4 turn = anamorph::frame_at(in_parameters);
+    const double length = glm::length(bump.vector);
+    const glm::dvec3 vector = (glm::dot(bump.vector, normal) < 0 ? -length : length) * normal;
+    anchor[0] = place.depth;
+    anchor[1] = bump.has_depth() ? bump.extent_w : std::min(bump.extent.x, bump.extent.y);
+    for (int c = 0; c < 4; ++c) anchor[2 + c] = turn[c];
+    for (int c = 0; c < 3; ++c) anchor[6 + c] = vector[c];
 }
 
 void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,

@@ -26,10 +26,11 @@ struct OverlayMesh {
     const anamorph::PointDepths* depths;  ///< of its points; empty where no bump needs them
 };
 
-/// Draws all of `list`, those that are not enabled too, on the surface that the list and the formula make.
+/// Draws all of `list`, each as that of `entries` that it is, those that are not enabled too, on the surface that the list and the formula make.
 /// Where parts of a surface lie over each other, a bump with depth or side is drawn on the part that it moves most.
 /// Lines end where the meshes do, unless there is a plane to go on.
-void draw_overlay(const std::vector<anamorph::Deformation>& list, const anamorph::DeformOptions& options,
+void draw_overlay(const std::vector<anamorph::Deformation>& list, const std::vector<std::size_t>& entries,
+                  const anamorph::DeformOptions& options,
                   const std::optional<anamorph::FormulaDisplacement>& formula,
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay);
@@ -45,5 +46,12 @@ void find_heights(const anamorph::Deformation& bump, const std::vector<std::uniq
 void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
                 const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
                 const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]);
+
+/// Finds the part of undeformed meshes that is over the centre of a bump, of several the one nearest to it in depth: the depth there, an
+/// extent in depth, the turn that lays the depth along the normal (a mean of those of the cells at the corners of that part), and V along it,
+/// or against it where V is. What is not found is left as it is.
+void find_anchor(const anamorph::Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                 const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                 const anamorph::ParameterPlane& plane, double (&anchor)[9]);
 
 }  // namespace anamorph_vtk

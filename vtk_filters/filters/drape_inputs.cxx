@@ -95,7 +95,7 @@ void DrapeInputs::put_heights(vtkDataSet* data, vtkDataArray* array) {
 
 void DrapeInputs::put_deformations(const std::vector<Numbers>& list) {
     if (list.empty()) return;
-    m_deformations = anamorph::deformations_json(checked_deformations(list));
+    m_deformations = anamorph::entries_json(checked_entries(list));
     m_files["deform"] = {"deformations", "", false};
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/deform/deformation_file.h"
 #include "anamorph/deform/formula_displacement.h"
 #include "anamorph/error.h"
 #include "anamorph/formula/formula_text.h"
@@ -34,6 +35,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphDeform);
@@ -315,23 +317,158 @@ double* vtkAnamorphDeform::GetDepth(int position) {
     return this->DeformationList->GetDepth(position);
 }
 
+void vtkAnamorphDeform::SetOrientation(int position, double w, double x, double y, double z) {
+    this->DeformationList->SetOrientation(position, w, x, y, z);
+}
+double* vtkAnamorphDeform::GetOrientation(int position) {
+    return this->DeformationList->GetOrientation(position);
+}
+void vtkAnamorphDeform::SetMirror(int position, double mirror, double at) {
+    this->DeformationList->SetMirror(position, mirror, at);
+}
+double* vtkAnamorphDeform::GetMirror(int position) {
+    return this->DeformationList->GetMirror(position);
+}
+void vtkAnamorphDeform::SetDeformationName(int position, const char* name) {
+    this->DeformationList->SetName(position, name);
+}
+std::string vtkAnamorphDeform::GetDeformationName(int position) {
+    return this->DeformationList->GetName(position);
+}
+
+double* vtkAnamorphDeform::GetSelectedAnchor() {
+    std::fill_n(this->SelectedAnchor, 9, 0.0);
+    const std::vector<Numbers>& all = this->DeformationList->GetAll();
+    const auto position = static_cast<std::size_t>(this->SelectedDeformation);
+    if (position >= all.size() || !this->Meshes->on_plane) return this->SelectedAnchor;
+    anamorph_vtk::guarded(this, [&] {
+        const Deformation bump = anamorph_vtk::checked_entries({all[position]})[0].deformation;
+        anamorph_vtk::find_anchor(bump, this->Meshes->meshes, this->Meshes->undeformed,
+                                  this->Meshes->used_plane, this->SelectedAnchor);
+    });
+    return this->SelectedAnchor;
+}
+
+int vtkAnamorphDeform::AnchorDeformation(int position) {
+    const int selected = this->SelectedDeformation;
+    this->SetSelectedDeformation(position);
+    const double* anchor = this->GetSelectedAnchor();
+    this->SelectedDeformation = selected;
+    const double* numbers = this->GetDeformation(position);
+    if (anchor[1] == 0) {
+        vtkErrorMacro(<< "position=" << position
+                      << ": no part of the surface is over the deformation's centre, by the last execution; "
+                         "there must be one, and the parameters be those of a plane");
+        return 0;
+    }
+    const double side = this->GetDepth(position)[2];
+    this->SetDeformation(position, numbers[0], numbers[1], numbers[2], numbers[3], anchor[6], anchor[7],
+                         anchor[8], numbers[7], numbers[8]);
+    this->SetDepth(position, anchor[0], anchor[1], side);
+    this->SetOrientation(position, anchor[2], anchor[3], anchor[4], anchor[5]);
+    return 1;
+}
+
 vtkDoubleArray* vtkAnamorphDeform::GetAllDeformations() {
     this->AllDeformations = columns_of(this->DeformationList->GetAll(), 0, 9);
     return this->AllDeformations;
 }
 
 vtkDoubleArray* vtkAnamorphDeform::GetAllDepths() {
-    this->AllDepths = columns_of(this->DeformationList->GetAll(), 9, kNumbers);
+    this->AllDepths =
+        columns_of(this->DeformationList->GetAll(), anamorph_vtk::kDepth, anamorph_vtk::kOrientation);
     return this->AllDepths;
 }
 
+void vtkAnamorphDeform::SetTableFrame(int position, double w, double x, double y, double z, double mirror,
+                                      double at, double name) {
+    // As rows of depths, they may come first.
+    if (position >= 0 && position < static_cast<int>(anamorph::kMaxDeformations) &&
+        position >= this->GetNumberOfDeformations())
+        this->SetNumberOfDeformations(position + 1);
+    this->SetOrientation(position, w, x, y, z);
+    this->SetMirror(position, mirror, at);
+    const auto index = static_cast<std::size_t>(std::max(position, 0));
+    if (this->NameNumbers.size() <= index) this->NameNumbers.resize(index + 1, 0);
+    if (this->NameNumbers[index] == name) return;
+    this->NameNumbers[index] = name;
+    this->Modified();
+}
+
+void vtkAnamorphDeform::SetNumberOfFrames(int number) {
+    for (int i = std::max(number, 0); i < this->GetNumberOfDeformations(); ++i) {
+        this->SetOrientation(i, 1, 0, 0, 0);
+        this->SetMirror(i, 0, 0);
+        if (static_cast<std::size_t>(i) < this->NameNumbers.size()) this->SetDeformationName(i, "");
+    }
+    if (static_cast<std::size_t>(std::max(number, 0)) < this->NameNumbers.size())
+        this->NameNumbers.resize(static_cast<std::size_t>(std::max(number, 0)));
+}
+
+vtkDoubleArray* vtkAnamorphDeform::GetAllFrames() {
+    this->AllFrames = columns_of(this->DeformationList->GetAll(), anamorph_vtk::kOrientation, kNumbers);
+    vtkDoubleArray* const six = this->AllFrames;
+    auto seven = vtkSmartPointer<vtkDoubleArray>::New();
+    seven->SetNumberOfComponents(7);
+    for (int i = 0, named = 0; i < this->GetNumberOfDeformations(); ++i) {
+        double row[7];
+        six->GetTuple(i, row);
+        row[6] = this->GetDeformationName(i).empty() ? 0 : ++named;
+        seven->InsertNextTuple(row);
+    }
+    this->AllFrames = seven;
+    return this->AllFrames;
+}
+
+void vtkAnamorphDeform::SetTableName(int index, const char* name) {
+    if (index < 0 || index >= static_cast<int>(anamorph::kMaxDeformations)) return;
+    const auto at = static_cast<std::size_t>(index);
+    if (this->TableNames.size() <= at) this->TableNames.resize(at + 1);
+    this->SetText(this->TableNames[at], name);
+}
+
+void vtkAnamorphDeform::SetNumberOfTableNames(int number) {
+    const auto size = static_cast<std::size_t>(std::max(number, 0));
+    if (size == this->TableNames.size()) return;
+    this->TableNames.resize(size);
+    this->Modified();
+}
+
+vtkStringArray* vtkAnamorphDeform::GetAllNames() {
+    this->AllNames = vtkSmartPointer<vtkStringArray>::New();
+    for (const Numbers& numbers : this->DeformationList->GetAll())
+        if (!numbers.Name.empty()) this->AllNames->InsertNextValue(numbers.Name);
+    return this->AllNames;
+}
+
+/// Gives the rows of a table the names that they have numbers of. Throws Error.
+void vtkAnamorphDeform::NameDeformations() {
+    const auto rows =
+        std::min(this->NameNumbers.size(), static_cast<std::size_t>(this->GetNumberOfDeformations()));
+    for (std::size_t i = 0; i < rows; ++i) {
+        const double number = this->NameNumbers[i];
+        if (!(number >= 0 && number <= static_cast<double>(this->TableNames.size())) ||
+            number != std::floor(number))
+            throw Error("deformation " + std::to_string(i) + ": name=" + anamorph::shortest(number) +
+                        ": must be a whole number from 0 (none) to that of names, " +
+                        std::to_string(this->TableNames.size()));
+        this->SetDeformationName(
+            static_cast<int>(i),
+            number == 0 ? "" : this->TableNames[static_cast<std::size_t>(number) - 1].c_str());
+    }
+}
+
 int vtkAnamorphDeform::ReadDeformations(const char* name) {
-    return name && *name ? this->DeformationList->ReadFile(name) : 1;
+    if (!name || !*name) return 1;
+    this->NameNumbers.clear();
+    return this->DeformationList->ReadFile(name);
 }
 
 int vtkAnamorphDeform::WriteDeformations(const char* name) {
     const bool first = !this->Controller || this->Controller->GetLocalProcessId() == 0;
-    return first && name && *name ? this->DeformationList->WriteFile(name) : 1;
+    if (!first || !name || !*name) return 1;
+    return anamorph_vtk::guarded(this, [&] { this->NameDeformations(); }) &&
+           this->DeformationList->WriteFile(name);
 }
 
 void vtkAnamorphDeform::SetText(std::string& member, const char* text) {
@@ -374,7 +511,7 @@ double* vtkAnamorphDeform::GetSelectedHeights() {
         return this->SelectedHeights;
     anamorph_vtk::guarded(this, [&] {
         const Deformation bump =
-            anamorph_vtk::checked_deformations({all[static_cast<std::size_t>(position)]})[0];
+            anamorph_vtk::checked_entries({all[static_cast<std::size_t>(position)]})[0].deformation;
         anamorph_vtk::find_heights(bump, this->Meshes->meshes, this->Meshes->deformed,
                                    this->Meshes->used_plane, this->SelectedHeights);
     });
@@ -474,7 +611,8 @@ struct vtkAnamorphDeform::Run {
     vtkInformationVector* outputs;
     std::vector<Leaf> leaves = {};
     anamorph_vtk::DeformSettings settings = {};
-    std::vector<Deformation> list = {};
+    std::vector<Deformation> list = {};     ///< with images
+    std::vector<std::size_t> entries = {};  ///< which of those that were given each is
     std::optional<FormulaDisplacement> formula = {};
     anamorph::DisplacementSum sum{{}};  ///< of the list
 
@@ -542,13 +680,19 @@ void vtkAnamorphDeform::Run::choose_plane() {
 }
 
 void vtkAnamorphDeform::Run::gather_deformations(const std::vector<Numbers>& more) {
+    filter.NameDeformations();
     std::vector<Numbers> numbers = filter.DeformationList->GetAll();
     if (filter.FileName && *filter.FileName) {
         const std::vector<Numbers> file = anamorph_vtk::read_deformations(filter.FileName);
         numbers.insert(numbers.end(), file.begin(), file.end());
     }
     numbers.insert(numbers.end(), more.begin(), more.end());
-    list = anamorph_vtk::checked_deformations(numbers);
+    anamorph::MirrorSteps steps;
+    const anamorph::ParameterPlane& plane = settings.plane;
+    if (settings.on_plane) steps = {plane.axis_u(), plane.gradient_u(), plane.axis_v(), plane.gradient_v()};
+    anamorph::DeformationsWithImages all = anamorph_vtk::checked_deformations(numbers, steps);
+    list = std::move(all.list);
+    entries = std::move(all.entry);
 }
 
 void vtkAnamorphDeform::Run::read_formula() {
@@ -617,7 +761,8 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
             meshes.push_back(
                 {leaves[i].in, &filter.Meshes->meshes[i]->parameters(), &filter.Meshes->meshes[i]->depths()});
     const bool whole = settings.on_plane && !distributed(filter.Controller);
-    draw_overlay(list, settings.options, formula, meshes, whole ? &settings.plane : nullptr, overlay);
+    draw_overlay(list, entries, settings.options, formula, meshes, whole ? &settings.plane : nullptr,
+                 overlay);
 }
 
 void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
@@ -641,7 +786,7 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
         this->Meshes->deformed.push_back(vtkSmartPointer<vtkPointSet>::Take(leaf.out->NewInstance()));
         this->Meshes->deformed.back()->SetPoints(leaf.out->GetPoints());
         this->Meshes->undeformed.push_back(vtkSmartPointer<vtkPointSet>::Take(leaf.in->NewInstance()));
-        this->Meshes->undeformed.back()->SetPoints(leaf.in->GetPoints());
+        this->Meshes->undeformed.back()->CopyStructure(leaf.in);
     }
     this->Meshes->on_plane = run.settings.on_plane;
     this->Meshes->used_plane = run.settings.plane;

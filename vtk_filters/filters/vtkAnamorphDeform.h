@@ -44,6 +44,7 @@
 
 #include <memory>  // for the implementation
 #include <string>  // for the formulas
+#include <vector>  // for names
 
 #include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkPassInputTypeAlgorithm.h"
@@ -53,6 +54,7 @@ class vtkAnamorphDeformationList;
 class vtkDoubleArray;
 class vtkMultiProcessController;
 class vtkPolyData;
+class vtkStringArray;
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorithm {
   public:
@@ -90,6 +92,21 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void SetNumberOfDepths(int number);
     int GetNumberOfDepths();
     double* GetDepth(int position) VTK_SIZEHINT(3);
+    /**
+     * The frame, the mirror image and the name of a deformation (vtkAnamorphDeformationList::SetOrientation and those that follow).
+     */
+    void SetOrientation(int position, double w, double x, double y, double z);
+    double* GetOrientation(int position) VTK_SIZEHINT(4);
+    void SetMirror(int position, double mirror, double at);
+    double* GetMirror(int position) VTK_SIZEHINT(2);
+    void SetDeformationName(int position, const char* name);
+    std::string GetDeformationName(int position);
+    /**
+     * Anchors a deformation to the undeformed surface of the last execution, on the plane: to what is there over
+     * its centre, of several parts the one nearest in depth. It gets its depth, a frame whose third direction is the surface's normal, an extent in depth, the lesser of the two along
+     * the plane, if it has none, and V, whose length stays, along the normal, or against it where V is. Returns 1, or 0 after an error.
+     */
+    int AnchorDeformation(int position);
     ///@}
 
     ///@{
@@ -99,6 +116,18 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      */
     vtkDoubleArray* GetAllDeformations();
     vtkDoubleArray* GetAllDepths();
+    /**
+     * The same of a table with frames, seven numbers a row: the orientation, mirror and at, and the number of the name in a list of names,
+     * counted from 1 (0: none). SetNumberOfFrames makes rows from `number` on as those of new deformations. A number that has
+     * no name is an error when the filter executes or the list is written.
+     */
+    void SetTableFrame(int position, double w, double x, double y, double z, double mirror, double at,
+                       double name);
+    void SetNumberOfFrames(int number);
+    vtkDoubleArray* GetAllFrames();
+    void SetTableName(int index, const char* name);
+    void SetNumberOfTableNames(int number);
+    vtkStringArray* GetAllNames();
     int ReadDeformations(const char* name);
     int WriteDeformations(const char* name);
     ///@}
@@ -269,6 +298,11 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     int GetSelectedDeformation() { return this->SelectedDeformation; }
     double* GetSelectedHeights() VTK_SIZEHINT(2);
     double* GetSelectedFrame() VTK_SIZEHINT(9);
+    /**
+     * What AnchorDeformation() would make of the selected deformation: center_w, extent_w, the orientation and V; all 0 where there is no
+     * surface near it.
+     */
+    double* GetSelectedAnchor() VTK_SIZEHINT(9);
     ///@}
 
     vtkMTimeType GetMTime() override;
@@ -292,9 +326,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     void Execute(vtkInformationVector** inputs, vtkInformationVector* outputs);
     void SetText(std::string& member, const char* text);
+    void NameDeformations();
 
     vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
-    vtkSmartPointer<vtkDoubleArray> AllDeformations, AllDepths;
+    vtkSmartPointer<vtkDoubleArray> AllDeformations, AllDepths, AllFrames;
+    vtkSmartPointer<vtkStringArray> AllNames;
+    std::vector<double> NameNumbers;  ///< by position, of TableNames
+    std::vector<std::string> TableNames;
     vtkSmartPointer<vtkMultiProcessController> Controller;
     char* FileName = nullptr;
     std::string FormulaX, FormulaY, FormulaZ, FormulaDefinitions;
@@ -307,7 +345,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     bool ComputeNormals = true, ComputeDisplacement = true, GenerateOverlay = false;
     int OutputPointsPrecision = DEFAULT_PRECISION;
     int SelectedDeformation = 0;
-    double SelectedHeights[2] = {}, SelectedFrame[9] = {};
+    double SelectedHeights[2] = {}, SelectedFrame[9] = {}, SelectedAnchor[9] = {};
     double ErrorBound = 0;
     vtkIdType NumberOfPointsComputed = 0, NumberOfUndefinedPoints = 0;
 

@@ -101,7 +101,9 @@ void vtkAnamorphDeformTransform::InternalUpdate() {
     auto map = std::make_unique<Map>();
     try {
         const anamorph::ParameterPlane plane(vector(this->Origin), vector(this->Axis1), vector(this->Axis2));
-        map->warp = {plane, anamorph_vtk::checked_deformations(this->DeformationList->GetAll())};
+        const anamorph::MirrorSteps steps{plane.axis_u(), plane.gradient_u(), plane.axis_v(),
+                                          plane.gradient_v()};
+        map->warp = {plane, anamorph_vtk::checked_deformations(this->DeformationList->GetAll(), steps).list};
     } catch (const std::exception& error) {
         vtkErrorMacro(<< error.what() << "; nothing is moved");
     }

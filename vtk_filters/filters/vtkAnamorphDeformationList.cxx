@@ -19,12 +19,12 @@ using Numbers = vtkAnamorphDeformationList::Numbers;
 using anamorph_vtk::kNothing;
 
 constexpr int kMost = static_cast<int>(anamorph::kMaxDeformations);
-constexpr int kPlain = 9;  ///< the numbers without those of the depth
+constexpr int kPlain = anamorph_vtk::kDepth;  ///< the numbers without those of the depth
 
 /// Compares bits, so that NaN equals itself and setting it again changes nothing.
 bool same(const Numbers& a, const Numbers& b) {
-    return std::equal(a.begin(), a.end(), b.begin(),
-                      [](double x, double y) { return x == y || (x != x && y != y); });
+    return a.Name == b.Name && std::equal(a.begin(), a.end(), b.begin(),
+                                          [](double x, double y) { return x == y || (x != x && y != y); });
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void vtkAnamorphDeformationList::PrintSelf(ostream& os, vtkIndent indent) {
     for (const Numbers& numbers : this->List) {
         os << indent.GetNextIndent();
         for (const double number : numbers) os << " " << number;
-        os << "\n";
+        os << " " << numbers.Name << "\n";
     }
 }
 
@@ -76,8 +76,10 @@ void vtkAnamorphDeformationList::InsertDeformation(int position, double center_u
                                                    double extent_u, double extent_v, double x, double y,
                                                    double z, double kernel, double enabled) {
     if (!this->IsPosition(position, std::min(this->GetNumberOfDeformations() + 1, kMost))) return;
-    this->List.insert(this->List.begin() + position,
-                      Numbers{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled, 0, 0, 0});
+    Numbers numbers = kNothing;
+    std::ranges::copy(std::array{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled},
+                      numbers.begin());
+    this->List.insert(this->List.begin() + position, numbers);
     this->Modified();
 }
 
@@ -85,12 +87,7 @@ void vtkAnamorphDeformationList::SetDeformation(int position, double center_u, d
                                                 double extent_u, double extent_v, double x, double y,
                                                 double z, double kernel, double enabled) {
     if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
-    Numbers& place = this->List[static_cast<std::size_t>(position)];
-    const Numbers numbers{center_u, center_v, extent_u, extent_v, x,         y,
-                          z,        kernel,   enabled,  place[9], place[10], place[11]};
-    if (same(place, numbers)) return;
-    place = numbers;
-    this->Modified();
+    this->SetNumbers(position, 0, {center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled});
 }
 
 void vtkAnamorphDeformationList::SetDeformationEnabled(int position, bool enabled) {
@@ -142,12 +139,7 @@ double* vtkAnamorphDeformationList::GetDeformation(int position) {
 void vtkAnamorphDeformationList::SetDepth(int position, double center_w, double extent_w, double side) {
     if (!this->IsPosition(position, kMost)) return;
     if (position >= this->GetNumberOfDeformations()) this->SetNumberOfDeformations(position + 1);
-    Numbers& place = this->List[static_cast<std::size_t>(position)];
-    Numbers numbers = place;
-    std::ranges::copy(std::array{center_w, extent_w, side}, numbers.begin() + kPlain);
-    if (same(place, numbers)) return;
-    place = numbers;
-    this->Modified();
+    this->SetNumbers(position, kPlain, {center_w, extent_w, side});
 }
 
 void vtkAnamorphDeformationList::SetNumberOfDepths(int number) {
@@ -156,17 +148,64 @@ void vtkAnamorphDeformationList::SetNumberOfDepths(int number) {
 
 int vtkAnamorphDeformationList::GetNumberOfDepths() {
     const auto last = std::find_if(this->List.rbegin(), this->List.rend(), [](const Numbers& numbers) {
-        return std::any_of(numbers.begin() + kPlain, numbers.end(), [](double n) { return n != 0; });
+        return std::any_of(numbers.begin() + kPlain, numbers.begin() + anamorph_vtk::kOrientation,
+                           [](double n) { return n != 0; });
     });
     return static_cast<int>(this->List.rend() - last);
 }
 
 double* vtkAnamorphDeformationList::GetDepth(int position) {
-    std::fill(this->Answer + kPlain, std::end(this->Answer), std::numeric_limits<double>::quiet_NaN());
+    return this->GetNumbers(position, kPlain, anamorph_vtk::kOrientation);
+}
+
+void vtkAnamorphDeformationList::SetOrientation(int position, double w, double x, double y, double z) {
     if (this->IsPosition(position, this->GetNumberOfDeformations()))
-        std::copy(this->List[static_cast<std::size_t>(position)].begin() + kPlain,
-                  this->List[static_cast<std::size_t>(position)].end(), this->Answer + kPlain);
-    return this->Answer + kPlain;
+        this->SetNumbers(position, anamorph_vtk::kOrientation, {w, x, y, z});
+}
+
+double* vtkAnamorphDeformationList::GetOrientation(int position) {
+    return this->GetNumbers(position, anamorph_vtk::kOrientation, anamorph_vtk::kMirror);
+}
+
+void vtkAnamorphDeformationList::SetMirror(int position, double mirror, double at) {
+    if (this->IsPosition(position, this->GetNumberOfDeformations()))
+        this->SetNumbers(position, anamorph_vtk::kMirror, {mirror, at});
+}
+
+double* vtkAnamorphDeformationList::GetMirror(int position) {
+    return this->GetNumbers(position, anamorph_vtk::kMirror, anamorph_vtk::kNumbers);
+}
+
+void vtkAnamorphDeformationList::SetName(int position, const char* name) {
+    if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
+    std::string& place = this->List[static_cast<std::size_t>(position)].Name;
+    const std::string given = name ? name : "";
+    if (place == given) return;
+    place = given;
+    this->Modified();
+}
+
+std::string vtkAnamorphDeformationList::GetName(int position) {
+    if (!this->IsPosition(position, this->GetNumberOfDeformations())) return "";
+    return this->List[static_cast<std::size_t>(position)].Name;
+}
+
+void vtkAnamorphDeformationList::SetNumbers(int position, int first, const std::vector<double>& numbers) {
+    Numbers& place = this->List[static_cast<std::size_t>(position)];
+    Numbers changed = place;
+    std::copy(numbers.begin(), numbers.end(), changed.begin() + first);
+    if (same(place, changed)) return;
+    place = changed;
+    this->Modified();
+}
+
+/// Some numbers of a deformation; NaN where it is not in the list.
+double* vtkAnamorphDeformationList::GetNumbers(int position, int first, int end) {
+    std::fill(this->Answer + first, this->Answer + end, std::numeric_limits<double>::quiet_NaN());
+    if (this->IsPosition(position, this->GetNumberOfDeformations()))
+        std::copy_n(this->List[static_cast<std::size_t>(position)].begin() + first, end - first,
+                    this->Answer + first);
+    return this->Answer + first;
 }
 
 int vtkAnamorphDeformationList::ReadFile(const char* name) {

@@ -20,6 +20,7 @@
 #define vtkAnamorphDeformationList_h
 
 #include <array>   // for a deformation
+#include <string>  // for names
 #include <vector>  // for the list
 
 #include "AnamorphFiltersModule.h"  // for the export macro
@@ -88,6 +89,34 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
+     * The frame of a deformation that has a depth, a quaternion w x y z of any length but 0: its extents go along the
+     * directions that it turns u, v and w into. 1 0 0 0, that of a new one, is no turn. The pointer is valid until the next call.
+     */
+    void SetOrientation(int position, double w, double x, double y, double z);
+    double* GetOrientation(int position) VTK_SIZEHINT(4);
+    ///@}
+
+    enum Mirrors { NO_MIRROR = 0, MIRROR_U = 1, MIRROR_V = 2 };
+    ///@{
+    /**
+     * The mirror image of a deformation: two numbers, mirror and at. With MIRROR_U it counts again beyond the line u = at, with
+     * MIRROR_V beyond v = at, with V mirrored as points of the plane are, or, where there is none, in x, or y. One that is its own image
+     * counts once. The pointer is valid until the next call.
+     */
+    void SetMirror(int position, double mirror, double at);
+    double* GetMirror(int position) VTK_SIZEHINT(2);
+    ///@}
+
+    ///@{
+    /**
+     * The name of a deformation, for people; none is empty. GetName of a position that is not in the list is empty too.
+     */
+    void SetName(int position, const char* name);
+    std::string GetName(int position);
+    ///@}
+
+    ///@{
+    /**
      * Read and write the list as a file, CSV if its name ends in .csv, else JSON. A file that is written reads
      * back to the bit. Return 1, or 0 after an error; reading then leaves the list as it is.
      */
@@ -98,7 +127,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
     ///@{
     /**
      * Read and write the list as a table with the columns named above; kernel (a number, or gaussian or wendland_c2)
-     * and enabled may be missing, and so may center_w, extent_w and side (a number, or both, front or back). ReadTable returns 1, or 0 after an error, which leaves the list as it is.
+     * and enabled may be missing, and so may center_w, extent_w and side (a number, or both, front or back), orientation_w to orientation_z, mirror (a number, or none, u or v), mirror_at and name. ReadTable returns 1, or 0 after an error, which leaves the list as it is.
      */
     int ReadTable(vtkTable* table);
     void WriteTable(vtkTable* table);
@@ -107,8 +136,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
     void DeepCopy(vtkAnamorphDeformationList* other);
 
 #ifndef __VTK_WRAP__
-    /// The nine numbers, and the three of the depth.
-    using Numbers = std::array<double, 12>;
+    /// The nine numbers, the three of the depth, the four of the orientation and the two of the mirror; and the name.
+    struct Numbers : std::array<double, 18> {
+        using Array = std::array<double, 18>;
+        std::string Name;
+        bool operator==(const Numbers&) const = default;
+    };
     const std::vector<Numbers>& GetAll() const {
         return this->List;
     }
@@ -124,8 +157,11 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     bool IsPosition(int position, int end);
 
-    std::vector<std::array<double, 12>> List;
-    double Answer[12] = {};
+    void SetNumbers(int position, int first, const std::vector<double>& numbers);
+    double* GetNumbers(int position, int first, int end);
+
+    std::vector<Numbers> List;
+    double Answer[18] = {};
 };
 
 #endif

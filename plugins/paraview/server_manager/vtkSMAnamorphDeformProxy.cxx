@@ -42,6 +42,7 @@ struct vtkSMAnamorphDeformProxy::Edits {
     std::optional<Point> center, corner, vector, tip;
     std::optional<Frame> frame;  ///< that the handles are shown in
     bool depths = false;         ///< Depths is set
+    bool frames = false;         ///< Frames is set
 };
 
 namespace {
@@ -106,6 +107,30 @@ double height_of_handles(vtkSMProxy* proxy, const Row& row, bool put, double sur
     return put && at ? row.frame.parameters(*at)[2] : surface;
 }
 
+// ---- The table ----
+
+/// A column of the table: which property has it, and where.
+struct Column {
+    std::size_t part, at;
+};
+constexpr const char* kParts[3] = {"Deformations", "Depths", "Frames"};
+constexpr std::size_t kPartColumns[3] = {9, 3, 7};
+constexpr Column kTable[] = {{0, 0}, {0, 1}, {1, 0}, {0, 2}, {0, 3}, {1, 1}, {0, 4}, {0, 5}, {0, 6}, {0, 7},
+                             {0, 8}, {1, 2}, {2, 0}, {2, 1}, {2, 2}, {2, 3}, {2, 4}, {2, 5}, {2, 6}};
+constexpr std::size_t kTableColumns = sizeof(kTable) / sizeof(kTable[0]);
+
+/// What rows that a part does not have are.
+double standard_of(const Column& column) {
+    return column.part == 2 && column.at == 0 ? 1 : 0;
+}
+
+/// Are all rows of Frames as those of new deformations?
+bool is_plain(const std::vector<double>& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (frames[i] != standard_of({2, i % kPartColumns[2]})) return false;
+    return true;
+}
+
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -135,19 +160,28 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     // Where rows are set anew, so are their depths: the server then has those of the rows that there are.
     if (is_one_of(name, {"Deformations"})) {
         this->Superclass::SetPropertyModifiedFlag("Depths", 1);
+        this->Superclass::SetPropertyModifiedFlag("Frames", 1);
         this->ListEdited = true;
     }
     if (is_one_of(name, {"Depths"})) this->Pending->depths = true;
+    if (is_one_of(name, {"Frames"})) this->Pending->frames = true;
+    if (is_one_of(name, {"Bumps"})) {
+        this->SplitBumps();
+        name = "Deformations";
+    }
     if (is_one_of(name,
                   {"SelectedCenter", "SelectedCorner", "SelectedTip", "SelectedVector", "SelectedDeformation",
                    "Deformations", "Input", "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"}))
         this->Edited(name);
+    this->ShowBumps();
 }
 
 int vtkSMAnamorphDeformProxy::LoadXMLState(vtkPVXMLElement* element, vtkSMProxyLocator* locator) {
     const WhileHeld loading(this->InStep);
     *this->Pending = Edits();
-    return this->Superclass::LoadXMLState(element, locator);
+    const int loaded = this->Superclass::LoadXMLState(element, locator);
+    this->ShowBumps();  // states from before there was the table have its parts
+    return loaded;
 }
 
 void vtkSMAnamorphDeformProxy::LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) {
@@ -194,6 +228,16 @@ void vtkSMAnamorphDeformProxy::ImportDeformations(const char* file) {
     const std::vector<double> depths = numbers_of(reader, "DepthsInfo");
     const bool any = std::any_of(depths.begin(), depths.end(), [](double depth) { return depth != 0; });
     set_numbers(this, "Depths", depths.data(), any ? depths.size() : 0);
+    reader->UpdatePropertyInformation(reader->GetProperty("FramesInfo"));
+    const std::vector<double> frames = numbers_of(reader, "FramesInfo");
+    set_numbers(this, "Frames", frames.data(), is_plain(frames) ? 0 : frames.size());
+    reader->UpdatePropertyInformation(reader->GetProperty("NamesInfo"));
+    vtkSMPropertyHelper names(this, "Names");
+    const vtkSMPropertyHelper names_read(reader, "NamesInfo");
+    names.SetNumberOfElements(names_read.GetNumberOfElements());
+    for (unsigned int i = 0; i < names_read.GetNumberOfElements(); ++i)
+        names.Set(i, names_read.GetAsString(i));
+    this->ShowBumps();
 }
 
 // ---- The list and the handles ----
@@ -232,29 +276,70 @@ std::vector<std::size_t> kept_rows(const std::vector<double>& before, const std:
 
 }  // namespace
 
-/// Rows of the list that were removed take theirs of Depths along.
+/// Gives the parts their columns of the table.
+void vtkSMAnamorphDeformProxy::SplitBumps() {
+    const std::vector<double> table = numbers_of(this, "Bumps");
+    const std::size_t rows = table.size() / kTableColumns;
+    std::vector<double> parts[3];
+    for (std::size_t p = 0; p < 3; ++p) parts[p].resize(rows * kPartColumns[p]);
+    for (std::size_t i = 0; i < rows * kTableColumns; ++i) {
+        const Column& column = kTable[i % kTableColumns];
+        parts[column.part][i / kTableColumns * kPartColumns[column.part] + column.at] = table[i];
+    }
+    // Without depths, or frames, there are no rows of them, as in lists that never had any.
+    if (std::all_of(parts[1].begin(), parts[1].end(), [](double x) { return x == 0; })) parts[1].clear();
+    if (is_plain(parts[2])) parts[2].clear();
+    for (std::size_t p = 0; p < 3; ++p) {
+        set_numbers(this, kParts[p], parts[p].data(), parts[p].size());
+        this->Superclass::SetPropertyModifiedFlag(kParts[p], 1);
+    }
+    this->Pending->depths = this->Pending->frames = true;
+}
+
+/// Makes the table of its parts.
+void vtkSMAnamorphDeformProxy::ShowBumps() {
+    if (!this->GetProperty("Bumps")) return;
+    std::vector<double> parts[3];
+    for (std::size_t p = 0; p < 3; ++p) parts[p] = numbers_of(this, kParts[p]);
+    std::vector<double> table;
+    for (std::size_t row = 0; row < parts[0].size() / kPartColumns[0]; ++row)
+        for (const Column& column : kTable) {
+            const std::size_t at = row * kPartColumns[column.part] + column.at;
+            table.push_back(at < parts[column.part].size() ? parts[column.part][at] : standard_of(column));
+        }
+    if (numbers_of(this, "Bumps") != table) set_numbers(this, "Bumps", table.data(), table.size());
+}
+
+/// Rows of the list that were removed take theirs of Depths and Frames along.
 void vtkSMAnamorphDeformProxy::RemoveDepths() {
     if (!this->GetProperty("Deformations")) return;
-    constexpr std::size_t kDepth = 3, kMost = std::size_t{1} << 24;  // steps of the comparison
+    constexpr std::size_t kMost = std::size_t{1} << 24;  // steps of the comparison
     const WhileHeld step(this->InStep);
     const std::vector<double> before = this->KnownList, after = numbers_of(this, "Deformations");
     this->KnownList = after;
     if (!this->ListEdited) return;
     this->ListEdited = false;
-    const std::vector<double> depths = numbers_of(this, "Depths");
+    const bool set[3] = {true, this->Pending->depths, this->Pending->frames};
+    const auto stays = [&](std::size_t p) { return set[p] || numbers_of(this, kParts[p]).empty(); };
     const std::size_t columns = columns_of(this->GetProperty("Deformations"));
-    if (this->Pending->depths || depths.empty() || columns == 0 || after.size() >= before.size() ||
+    if ((stays(1) && stays(2)) || columns == 0 || after.size() >= before.size() ||
         before.size() % columns != 0 || after.size() % columns != 0)
         return;
     if (before.size() * (before.size() - after.size()) / columns > kMost) return;
     const std::vector<std::size_t> kept = kept_rows(before, after, columns);
     if (kept.empty() && !after.empty()) return;
-    std::vector<double> left;
-    for (const std::size_t row : kept)
-        if ((row + 1) * kDepth <= depths.size())
-            left.insert(left.end(), depths.begin() + static_cast<std::ptrdiff_t>(row * kDepth),
-                        depths.begin() + static_cast<std::ptrdiff_t>((row + 1) * kDepth));
-    set_numbers(this, "Depths", left.data(), left.size());
+    for (std::size_t p = 1; p < 3; ++p) {
+        if (stays(p)) continue;
+        const std::vector<double> all = numbers_of(this, kParts[p]);
+        const auto at = [&](std::size_t row) {
+            return all.begin() + static_cast<std::ptrdiff_t>(row * kPartColumns[p]);
+        };
+        std::vector<double> left;
+        for (const std::size_t row : kept)
+            if ((row + 1) * kPartColumns[p] <= all.size()) left.insert(left.end(), at(row), at(row + 1));
+        set_numbers(this, kParts[p], left.data(), left.size());
+    }
+    this->ShowBumps();
 }
 
 void vtkSMAnamorphDeformProxy::Edited(const char* name) {
@@ -381,6 +466,27 @@ bool vtkSMAnamorphDeformProxy::TakeHeights() {
 
 void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* name) {
     if (name && std::string(static_cast<const char*>(name)) == "FreezePlane") this->FreezePlane();
+    if (name && std::string(static_cast<const char*>(name)) == "AnchorSelected") this->AnchorSelected();
+}
+
+void vtkSMAnamorphDeformProxy::AnchorSelected() {
+    this->UpdatePipeline();
+    this->UpdatePropertyInformation(this->GetProperty("SelectedAnchor"));
+    const std::vector<double> anchor = numbers_of(this, "SelectedAnchor");
+    std::vector<double> table = numbers_of(this, "Bumps");
+    const int selected = vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt();
+    const std::size_t first = static_cast<std::size_t>(std::max(selected, 0)) * kTableColumns;
+    if (anchor.size() != 9 || anchor[1] == 0 || table.size() < first + kTableColumns) {
+        vtkErrorMacro(
+            "no part of the surface is over the centre of the selected deformation; there must be one, and "
+            "the "
+            "parameters be those of a plane");
+        return;
+    }
+    constexpr std::size_t kColumns[9] = {2, 5, 12, 13, 14, 15, 6, 7, 8};  // c_w, a_w, q, V
+    for (std::size_t i = 0; i < 9; ++i) table[first + kColumns[i]] = anchor[i];
+    set_numbers(this, "Bumps", table.data(), table.size());
+    this->UpdateVTKObjects();
 }
 
 void vtkSMAnamorphDeformProxy::FreezePlane() {

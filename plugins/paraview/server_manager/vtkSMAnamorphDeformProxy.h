@@ -14,8 +14,11 @@
  * in the parameters that are chosen. A handle that is where the row has it changes nothing, to the bit. So
  * traces and macros, which have the handles beside the list, make the list that was recorded.
  *
- * Where rows are removed from the list, and Depths is not set in the same step, the rows of Depths that belong to them
- * go as well.
+ * Bumps is the whole table: the columns of the properties Deformations, Depths and Frames, which the server has, row by row, so that a
+ * row that is removed, moved or added takes all of its own along. What is set of the parts is shown in the table, and the other way round.
+ *
+ * Scripts that remove rows from Deformations alone, and do not set Depths or Frames in the same step, lose the rows of these that
+ * belong to them.
  *
  * The automatic plane is that of the last update, or before one that of the input's bounds. The command
  * FreezePlane updates the filter and makes it Origin, Axis1 and Axis2, with AutomaticPlane off.
@@ -72,6 +75,9 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool TipIsShown();
     void ImportDeformations(const char* file);
     void RemoveDepths();
+    void SplitBumps();
+    void ShowBumps();
+    void AnchorSelected();
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
 
