@@ -30,8 +30,8 @@ def expect(deform, rows):
     assert list(deform.Bumps) == rows, list(deform.Bumps)
     own, depths, frames = parts_of(rows)
     assert list(deform.Deformations) == own and list(deform.Depths) == depths and list(deform.Frames) == frames
-    assert list(deform.GetPropertyValue("DeformationsInfo")) == own
     deform.SMProxy.UpdatePropertyInformation()
+    assert list(deform.GetPropertyValue("DeformationsInfo")) == own
     assert list(deform.GetPropertyValue("DepthsInfo")) == depths
     info = list(deform.GetPropertyValue("FramesInfo"))
     assert [x for i, x in enumerate(info) if i % 7 != 6] == [x for i, x in enumerate(frames) if i % 7 != 6], info
