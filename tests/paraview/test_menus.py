@@ -95,7 +95,8 @@ def errors_of(filter, **values):
 
 
 picture = Wavelet(WholeExtent=[0, 9, 0, 9, 0, 0])
-lists = [(simple.AnamorphDeform(Input=sphere), "Deformations", 9), (simple.AnamorphInbetween(Input=[sphere]), "Keys", 3),
+lists = [(simple.AnamorphDeform(Input=sphere), "Deformations", 9), (simple.AnamorphDeform(Input=sphere), "Bumps", 19),
+         (simple.AnamorphDeformImage(Input=wavelet), "Deformations", 9), (simple.AnamorphInbetween(Input=[sphere]), "Keys", 3),
          (simple.AnamorphDrape(Input=picture), "Lights", 3), (simple.AnamorphProjectionBake(Input=sphere, Panoramas=[picture]), "Projectors", 9)]
 for filter, name, row in lists:
     for count in (row - 1, 2 * row + 1):

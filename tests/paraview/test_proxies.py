@@ -21,7 +21,9 @@ NO_PROPERTY = {
     "vtkAnamorphBlendShapeReader": {"SetFileName"},  # AddFileName() takes several
     "vtkAnamorphDrape": {"SetBlendWeight", "SetPositionsConnection", "SetHeightConnection", "SetDeformationsConnection"},
     "vtkAnamorphFigureImage": {"SetTextureMapping"},  # AddTexture() is for programs
-    "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
+    "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection",
+                          "SetOrientation", "SetMirror", "SetDeformationName"},  # Frames and Names have them
+    "vtkAnamorphDeformImage": {"SetDeformationList"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphPanoramaProjection": {"SetController", "SetTimeBudget"},  # the proxy gives it time
     "vtkAnamorphProjectionBake": {"SetController"},
@@ -229,7 +231,8 @@ def check_surfaces(element, words):
 def with_input(cls):
     """A new object that has what it needs to execute, seen by a camera."""
     new = cls()
-    if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape, anamorph.vtkAnamorphPanoramaView):
+    if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape, anamorph.vtkAnamorphPanoramaView,
+               anamorph.vtkAnamorphDeformImage):
         picture = vtkRTAnalyticSource()
         picture.SetWholeExtent(0, 9, 0, 19, 0, 0)  # twice as high as wide, as the last projection is
         picture.Update()

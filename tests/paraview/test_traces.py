@@ -90,6 +90,20 @@ def shapes_of_files():
     apply(reader, Weights=[.25], Animation=-1)
 
 
+def a_volume_deformed():
+    wavelet = Wavelet(WholeExtent=[-5, 5, -5, 5, 0, 3])
+    wavelet.UpdatePipeline()
+    image = AnamorphDeformImage(registrationName="result", Input=wavelet)
+    apply(image, Deformations=[0, 0, 3, 3, .4, .2, .1, 0, 1], Background=-1)
+    apply(image, Inverse=1, Interpolation=2, Axis1=[1, .1, 0])
+
+
+def a_whole_table():
+    deform = AnamorphDeform(registrationName="result", Input=upright_plane())
+    apply(deform, Names=["brow"], Bumps=[.1, .2, 0, .2, .1, .3, 0, .2, .1, 0, 1, 1, 1, 0, .2, 0, 1, .05, 1])
+    apply(deform, SelectedVector=[.1, .2, 0], ComputeFolds=1)
+
+
 def files_and_a_table():
     plane = upright_plane()
     table = CSVReader(FileName=[os.path.abspath("list.csv")])
@@ -197,7 +211,7 @@ def a_view_of_a_panorama():
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row, shapes_of_files,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
-            a_panorama_baked, a_view_of_a_panorama]
+            a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table]
 
 
 # ---- What is compared ----

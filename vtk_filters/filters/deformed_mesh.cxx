@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -98,6 +100,36 @@ class MeshOf final : public DeformedMesh {
         const vtkIdType written = draw(changes, out, execution, begin, end);
         hand_out(out);
         return written;
+    }
+
+    Jacobian write_jacobians(vtkPointSet* out, const ParallelFor& parallel_for) override {
+        vtkNew<vtkDoubleArray> array;
+        array->SetName("Jacobian");
+        array->SetNumberOfTuples(static_cast<vtkIdType>(size()));
+        double* const to = array->GetPointer(0);
+        const anamorph::ParameterPlane& plane = m_settings.plane;
+        const auto take = [&](const anamorph::SurfaceSlopes& slopes) {
+            if (m_formula) m_formula->add_slopes(m_parameters, slopes);
+            for (int k = 0; k < slopes.count; ++k) {
+                glm::dmat3 by(1.0);
+                by += glm::outerProduct(slopes.by_u(k), plane.gradient_u()) +
+                      glm::outerProduct(slopes.by_v(k), plane.gradient_v());
+                if (slopes.parameters > 2)
+                    by += glm::outerProduct(glm::dvec3(slopes.by[6][k], slopes.by[7][k], slopes.by[8][k]),
+                                            plane.normal());
+                to[slopes.point(k)] = glm::determinant(by);
+            }
+        };
+        if (const auto* grid = std::get_if<DeformedGrid>(&m_surface))
+            grid->slopes(m_list, nullptr, take, parallel_for);
+        else
+            std::get<DeformedPoints>(m_surface).slopes(m_list, nullptr, take, parallel_for);
+        for (const vtkIdType i : m_unmoved) to[i] = 1;
+        out->GetPointData()->AddArray(array);
+        Jacobian least;
+        for (std::size_t i = 0; i < size(); ++i)
+            if (to[i] < least.determinant) least = {Triples(m_source)[static_cast<std::int64_t>(i)], to[i]};
+        return least;
     }
 
     const std::vector<glm::dvec2>& parameters() const override { return m_parameters; }

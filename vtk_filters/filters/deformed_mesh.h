@@ -60,6 +60,15 @@ class DeformedMesh {
     virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* out,
                              Execution& execution, double progress_begin, double progress_end) = 0;
 
+    /// A point and the determinant of the Jacobian of the map of space p + D(p) there.
+    struct Jacobian {
+        glm::dvec3 point{0.0};  ///< of the undeformed mesh
+        double determinant = std::numeric_limits<double>::infinity();
+    };
+    /// Gives `out` the array Jacobian, of all points, after deform(), and returns the least, the first of several. Points that are not
+    /// moved have 1. Of a plane's parameters; how the sides of bumps change is not counted.
+    virtual Jacobian write_jacobians(vtkPointSet* out, const anamorph::ParallelFor& parallel_for) = 0;
+
     /// The depths and normals of all points; none where the list needs none.
     virtual const anamorph::PointDepths& depths() const = 0;
     /// The parameters of all points; those of points that are not moved are not finite.

@@ -240,6 +240,8 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
     write("UsedAxis1", this->UsedAxis1);
     write("UsedAxis2", this->UsedAxis2);
     os << indent << "Cutoff: " << this->Cutoff << "\n"
+       << indent << "ComputeFolds: " << this->ComputeFolds << "\n"
+       << indent << "LeastJacobian: " << this->LeastJacobian << "\n"
        << indent << "ComputeNormals: " << this->ComputeNormals << "\n"
        << indent << "ComputeDisplacement: " << this->ComputeDisplacement << "\n"
        << indent << "GenerateOverlay: " << this->GenerateOverlay << "\n"
@@ -403,6 +405,16 @@ void vtkAnamorphDeform::SetNumberOfFrames(int number) {
     }
     if (static_cast<std::size_t>(std::max(number, 0)) < this->NameNumbers.size())
         this->NameNumbers.resize(static_cast<std::size_t>(std::max(number, 0)));
+}
+
+int vtkAnamorphDeform::GetNumberOfFrames() {
+    const std::vector<Numbers>& all = this->DeformationList->GetAll();
+    const auto last = std::find_if(all.rbegin(), all.rend(), [](const Numbers& numbers) {
+        constexpr int kFirst = anamorph_vtk::kOrientation;
+        return !numbers.Name.empty() ||
+               !std::equal(numbers.begin() + kFirst, numbers.end(), anamorph_vtk::kNothing.begin() + kFirst);
+    });
+    return static_cast<int>(all.rend() - last);
 }
 
 vtkDoubleArray* vtkAnamorphDeform::GetAllFrames() {
@@ -625,6 +637,7 @@ struct vtkAnamorphDeform::Run {
     void deform_leaves();
     /// Says of a leaf what is known of its displacement. mesh: null where there are no points.
     void report(vtkPointSet* out, const DeformedMesh* mesh);
+    void tell_folds(const DeformedMesh::Jacobian& least);
     void draw_overlay_of_meshes();
 };
 
@@ -729,6 +742,13 @@ void vtkAnamorphDeform::Run::report(vtkPointSet* out, const DeformedMesh* mesh) 
 
 void vtkAnamorphDeform::Run::deform_leaves() {
     anamorph_vtk::Execution execution(&filter);
+    DeformedMesh::Jacobian least;
+    const auto lesser = [](const DeformedMesh::Jacobian& a, const DeformedMesh::Jacobian& b) {
+        return b.determinant < a.determinant ? b : a;
+    };
+    if (filter.ComputeFolds && !settings.on_plane)
+        throw Error("ComputeFolds", "1",
+                    "the parameters must be those of a plane: texture coordinates move no space");
     double total = 0, done = 0;
     for (const Leaf& leaf : leaves) total += static_cast<double>(leaf.in->GetNumberOfPoints());
     const double share = filter.GenerateOverlay ? 0.9 : 1;
@@ -745,10 +765,27 @@ void vtkAnamorphDeform::Run::deform_leaves() {
             const double middle = formula ? begin + (end - begin) * 0.3 : begin;
             mesh->set_formula(formula, execution.stage(begin, middle));
             filter.NumberOfPointsComputed += mesh->deform(list, out, execution, middle, end);
+            if (filter.ComputeFolds)
+                least = lesser(least, mesh->write_jacobians(out, execution.stage(end, end)));
             done += count;
         }
         report(out, mesh.get());
     }
+    tell_folds(least);
+}
+
+void vtkAnamorphDeform::Run::tell_folds(const DeformedMesh::Jacobian& least) {
+    filter.LeastJacobian = 1;
+    put(glm::dvec3(0.0), filter.LeastJacobianPoint);
+    if (!filter.ComputeFolds || std::isinf(least.determinant)) return;
+    filter.LeastJacobian = least.determinant;
+    put(least.point, filter.LeastJacobianPoint);
+    if (least.determinant > 0) return;
+    const auto text = [](double x) { return anamorph::shortest(x); };
+    vtkWarningWithObjectMacro(&filter, << "the deformations fold space, worst at x=" << text(least.point.x)
+                                       << ", y=" << text(least.point.y) << ", z=" << text(least.point.z)
+                                       << ", where their Jacobian determinant is " << text(least.determinant)
+                                       << ": there is no single inverse");
 }
 
 void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {

@@ -124,9 +124,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void SetTableFrame(int position, double w, double x, double y, double z, double mirror, double at,
                        double name);
     void SetNumberOfFrames(int number);
+    /** The number of deformations up to the last one with a frame, a mirror image or a name. */
+    int GetNumberOfFrames();
     vtkDoubleArray* GetAllFrames();
     void SetTableName(int index, const char* name);
     void SetNumberOfTableNames(int number);
+    int GetNumberOfTableNames() { return static_cast<int>(this->TableNames.size()); }
     vtkStringArray* GetAllNames();
     int ReadDeformations(const char* name);
     int WriteDeformations(const char* name);
@@ -245,6 +248,27 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
+     * Whether the points get the array Jacobian: the determinant of the Jacobian of the map of space that the deformations and the formula
+     * make, over the plane of the parameters. 1 is as it was; where it is 0 or less, space folds, and a warning says where it is least. That is of
+     * the points alone: vtkAnamorphDeformTransform::GetFold() proves that there is no fold anywhere. Sides of deformations count as
+     * they are at the point. Texture coordinates are refused. Default: off.
+     */
+    vtkSetMacro(ComputeFolds, bool);
+    vtkGetMacro(ComputeFolds, bool);
+    vtkBooleanMacro(ComputeFolds, bool);
+    ///@}
+
+    ///@{
+    /**
+     * The least determinant of the last execution with ComputeFolds on this rank, and the point of the undeformed surface that has it; 1
+     * and (0, 0, 0) where there are no points.
+     */
+    vtkGetMacro(LeastJacobian, double);
+    vtkGetVector3Macro(LeastJacobianPoint, double);
+    ///@}
+
+    ///@{
+    /**
      * Whether the second output has the overlay. Default: off.
      */
     vtkSetMacro(GenerateOverlay, bool);
@@ -346,6 +370,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     int OutputPointsPrecision = DEFAULT_PRECISION;
     int SelectedDeformation = 0;
     double SelectedHeights[2] = {}, SelectedFrame[9] = {}, SelectedAnchor[9] = {};
+    bool ComputeFolds = false;
+    double LeastJacobian = 1, LeastJacobianPoint[3] = {};
     double ErrorBound = 0;
     vtkIdType NumberOfPointsComputed = 0, NumberOfUndefinedPoints = 0;
 

@@ -166,6 +166,8 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     if (is_one_of(name, {"Depths"})) this->Pending->depths = true;
     if (is_one_of(name, {"Frames"})) this->Pending->frames = true;
     if (is_one_of(name, {"Bumps"})) {
+        // Rows may be set number by number.
+        if (numbers_of(this, "Bumps").size() % kTableColumns != 0) return;
         this->SplitBumps();
         name = "Deformations";
     }
@@ -191,6 +193,14 @@ void vtkSMAnamorphDeformProxy::LoadState(const vtkSMMessage* message, vtkSMProxy
 }
 
 void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
+    if (this->GetProperty("Bumps") && numbers_of(this, "Bumps").size() % kTableColumns != 0) {
+        // The superclass says that the last row is not whole; the others count.
+        this->Superclass::UpdateVTKObjects();
+        const WhileHeld step(this->InStep);
+        this->SplitBumps();
+        this->Edited("Deformations");
+        this->ShowBumps();
+    }
     // Not before: who sets a list may change its length first, and its numbers then.
     this->RemoveDepths();
     if (!this->FilesPending) {
@@ -363,7 +373,8 @@ void vtkSMAnamorphDeformProxy::Edited(const char* name) {
 
 void vtkSMAnamorphDeformProxy::Resolve() {
     const Edits& edits = *this->Pending;
-    std::vector<double> list = edits.list;
+    // Where the plane is not known handles say nothing: what they did on another one stays.
+    std::vector<double> list = frame_of(this) ? edits.list : numbers_of(this, "Deformations");
     if (const std::optional<Row> row = selected_row(this, list)) {
         if (edits.center) row->move_center(*edits.center);
         if (edits.corner) row->move_corner(*edits.corner);
