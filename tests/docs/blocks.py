@@ -105,6 +105,8 @@ OTHERS = [
     # In the order in which python_blocks.py and paraview_blocks.py run them.
     Other("python", "import vtkAnamorphDeform\n", "vtk", "deform"),
     Other("python", "deform.SetDepth(", "vtk", "depths"),
+    Other("python", "deform.AnchorDeformation(", "vtk", "anchor"),
+    Other("python", "import vtkAnamorphDeformImage\n", "vtk", "image"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),

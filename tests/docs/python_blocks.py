@@ -8,6 +8,7 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture,
                                          vtkWindowToImageFilter)
 
@@ -57,6 +58,21 @@ def check_deform():
     run("depths", names)
     deform.Update()
     assert points(deform.GetOutput())[:, 2].max() == 0, points(deform.GetOutput()).max(0)
+    # Anchored it is as deep as it is wide, and of the front it is seen on both sides.
+    run("anchor", names)
+    deform.SetDepth(0, 0, deform.GetDepth(0)[1], 0)
+    deform.Update()
+    assert deform.GetDepth(0)[1] == 0.5 and deform.GetDeformationName(0) == "left brow"
+    assert points(deform.GetOutput())[:, 2].min() > 0.5, points(deform.GetOutput()).min(0)
+
+
+def check_image():
+    volume = vtkRTAnalyticSource()
+    volume.SetWholeExtent(-4, 4, -4, 4, 0, 3)
+    image = run("image", {"volume": volume})["image"]
+    image.Update()
+    before, after = (vtk_to_numpy(data.GetPointData().GetScalars()) for data in (volume.GetOutput(), image.GetOutput()))
+    assert before.shape == after.shape and 0 < (before != after).sum() < before.size and image.GetNumberOfFailures() == 0
 
 
 def check_project():
@@ -92,7 +108,7 @@ def check_mapper():
     assert image.GetOutput().GetNumberOfPoints() > 0
 
 
-checks = {"deform": check_deform, "project": check_project, "shader": check_shader, "mapper": check_mapper}
+checks = {"deform": check_deform, "image": check_image, "project": check_project, "shader": check_shader, "mapper": check_mapper}
 for check in checks.values():
     check()
-assert set(TEXT) == {*checks, "depths", "textures"}, TEXT.keys()
+assert set(TEXT) == {*checks, "depths", "anchor", "textures"}, TEXT.keys()

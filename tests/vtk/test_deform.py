@@ -30,7 +30,7 @@ assert "AutomaticPlane" in str(deform)
 # Every property: what is set is what is got; the same value again changes nothing.
 for name, value in {"Cutoff": 1e-5, "ParameterMode": 1, "AutomaticPlane": False, "Origin": (1.0, 2.0, 3.0),
                     "Axis1": (0.0, 1.0, 0.0), "Axis2": (0.0, 0.0, 1.0), "ComputeNormals": False,
-                    "ComputeDisplacement": False, "GenerateOverlay": True, "OutputPointsPrecision": 1,
+                    "ComputeDisplacement": False, "ComputeFolds": True, "GenerateOverlay": True, "OutputPointsPrecision": 1,
                     "FileName": "list.json", "FormulaX": "u", "FormulaY": "v*k", "FormulaZ": "frame",
                     "FormulaDefinitions": "k=2", "Frame": 2.5}.items():
     other = anamorph.vtkAnamorphDeform()
@@ -41,6 +41,26 @@ for name, value in {"Cutoff": 1e-5, "ParameterMode": 1, "AutomaticPlane": False,
     time = other.GetMTime()
     getattr(other, "Set" + name)(value)
     assert other.GetMTime() == time, name
+
+for name, value in {"Inverse": True, "Interpolation": 2, "Background": -1.5, "FileName": "list.json", "Origin": (1.0, 2.0, 3.0),
+                    "Axis1": (0.0, 1.0, 0.0), "Axis2": (0.0, 0.0, 1.0)}.items():
+    image = anamorph.vtkAnamorphDeformImage()
+    assert getattr(image, "Get" + name)() != value, name
+    getattr(image, "Set" + name)(value)
+    assert getattr(image, "Get" + name)() == value, name
+    time = image.GetMTime()
+    getattr(image, "Set" + name)(value)
+    assert image.GetMTime() == time, name
+
+# Frames, images and names of the list.
+framed = anamorph.vtkAnamorphDeform()
+framed.AddDeformation(0, 0, 1, 1, 0, 0, 1)
+framed.SetDepth(0, 0, 1)
+framed.SetOrientation(0, 1, 2, 3, 4)
+framed.SetMirror(0, anamorph.vtkAnamorphDeformationList.MIRROR_V, 0.25)
+framed.SetDeformationName(0, "brow")
+assert framed.GetOrientation(0) == (1, 2, 3, 4) and framed.GetMirror(0) == (2, 0.25)
+assert framed.GetDeformationName(0) == "brow" and framed.GetDeformationList().GetName(0) == "brow"
 
 # The list.
 assert deform.AddDeformation(0.25, 0, 0.3, 0.4, 0, 0, 1) == 0
