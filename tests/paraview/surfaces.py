@@ -96,3 +96,10 @@ def digests(folder):
     """By name: how many points there are, and the digest."""
     found = {name: gather(source) for name, source in make(folder).items()}
     return {name: (len(f), digest(f)) for name, f in found.items()}
+
+
+def splats_head(count):
+    """The head of a file of Gaussian splats."""
+    names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"]
+    return f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\n" + \
+        "".join(f"property float {name}\n" for name in names) + "end_header\n"

@@ -9,6 +9,7 @@ import subprocess
 import xml.etree.ElementTree as xml
 
 import anamorph
+import surfaces
 from paraview import servermanager
 from paraview.simple import LoadPlugin
 from paraview.vtk.vtkFiltersSources import vtkPlaneSource
@@ -46,8 +47,8 @@ LEAST_ALONE = {"SelectedDeformation": 0, "BaseIndex": 0, "Resolution": 0}
 # Setters that count as another class does.
 NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
             for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}
-# Proxies with fewer numbers than others: of these defaults, and ends of ranges.
-FEW = {"AnamorphBlendShapeReader": (2, 1)}
+# Proxies with fewer numbers than others: of these defaults, ends of ranges, and parameters.
+FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphSplatReader": (0, 0, 1)}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider for what has two ends, of which none can be dragged over so much. Ends beyond this are left to the filter.
@@ -245,6 +246,10 @@ def with_input(cls):
         with open("shape.obj", "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         new.AddFileName("shape.obj")
+    elif cls is anamorph.vtkAnamorphSplatReader:
+        with open("splats.ply", "w") as file:
+            file.write(surfaces.splats_head(0))
+        new.SetFileName("splats.ply")
     elif cls is anamorph.vtkAnamorphFigureReader:
         with open("ranges.nudes", "w") as file:
             file.write("figure f 1 a\nellipsoid a 5 8 4\nrepeat 0 2 moveto f a 500 500 300\nstop\n")
@@ -340,8 +345,8 @@ for group, element in found:
         continue
     assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
     compared, own = check_defaults(element), check_parameters(element)
-    least_compared, least_ends = FEW.get(name, (4, 2))
-    assert compared >= least_compared and own >= 4, (name, compared, own)
+    least_compared, least_ends, least_own = FEW.get(name, (4, 2, 4))
+    assert compared >= least_compared and own >= least_own, (name, compared, own)
     compared_rows |= check_whole(element, rows, menus)
     if element.get("class") == "vtkAnamorphDrape":
         check_surfaces(element, menus["drape_surface"])

@@ -98,6 +98,13 @@ def a_volume_deformed():
     apply(image, Inverse=1, Interpolation=2, Axis1=[1, .1, 0])
 
 
+def splats_of_a_file():
+    values = surfaces.np.random.default_rng(5).normal(0, 1, (30, 14)).astype("<f4")
+    with open("splats.ply", "wb") as file:
+        file.write(surfaces.splats_head(30).encode() + values.tobytes())
+    AnamorphSplatReader(registrationName="result", FileName=os.path.abspath("splats.ply"))
+
+
 def a_whole_table():
     deform = AnamorphDeform(registrationName="result", Input=upright_plane())
     apply(deform, Names=["brow"], Bumps=[.1, .2, 0, .2, .1, .3, 0, .2, .1, 0, 1, 1, 1, 0, .2, 0, 1, .05, 1])
@@ -211,7 +218,8 @@ def a_view_of_a_panorama():
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row, shapes_of_files,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
-            a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table]
+            a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table,
+            splats_of_a_file]
 
 
 # ---- What is compared ----
