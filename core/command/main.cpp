@@ -19,6 +19,7 @@
 #include "anamorph/figure/language/language.h"
 #include "anamorph/figure/outline/drawing.h"
 #include "anamorph/figure/outline/fit.h"
+#include "anamorph/operation/figure_look.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 #include "anamorph/version.h"
@@ -56,8 +57,10 @@ struct Settings {
     double perspective = 0;            ///< the distance from the eye to the middle of the window; 0: none
     bool fit = false;                  ///< the view
     FigureLook look;                   ///< of films
-    double frames_per_second = 0;      ///< 0: the motion's own
-    double scene_tol = 0;              ///< 0: spheres of the usual cells
+    ParameterValues own_look{
+        figure_look_table()};      ///< of films: colors by formulas, heights, and what lines stand for
+    double frames_per_second = 0;  ///< 0: the motion's own
+    double scene_tol = 0;          ///< 0: spheres of the usual cells
     int threads = static_cast<int>(kThreadsRow.standard), columns = static_cast<int>(kColumnsRow.standard);
     Characters characters = Characters::braille;
 };
@@ -101,6 +104,35 @@ CLI::Validator frame_range() {
             return "\"" + text + "\": must be N, N-M, N-MxSTEP or all";
         },
         "");
+}
+
+/// The option of a row of figures' looks.
+std::string option_of(const std::string& row) {
+    if (row == "outline_tol") return "--simple-tol";
+    std::string name = "--" + row;
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+/// Runs `read`, whose errors then name the option in place of the row.
+template <class Read>
+void with_options(const Read& read) {
+    try {
+        read();
+    } catch (const Error& error) {
+        if (error.parameter().empty()) throw;
+        throw Error(option_of(error.parameter()) +
+                    std::string(error.what()).substr(error.parameter().size()));
+    }
+}
+
+/// Says what of a drawing's bodies its lines do not show.
+void tell_left_out(int frame, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    std::cerr << "anamorph-figure: frame " << frame
+              << ": cylinders before the near plane are left out: " << printable(all) << "\n";
 }
 
 class Command {
@@ -274,6 +306,28 @@ class Command {
         add_viewport(sub, "");
     }
 
+    /// An option for each row of figures' looks.
+    void add_look(CLI::App* sub) {
+        for (const Parameter& row : figure_look_table()) {
+            std::string what = row.documentation;
+            const std::string row_name = "outline_tol";
+            for (std::size_t at; (at = what.find(row_name)) != std::string::npos;)
+                what.replace(at, row_name.size(), option_of(row_name));
+            const bool is_number = row.type == ParameterType::number || row.type == ParameterType::whole;
+            std::string takes = is_number ? "NUMBER" : row.type == ParameterType::file ? "FILE" : "TEXT";
+            if (row.type == ParameterType::choice) takes = row.accepted();
+            if (!row.default_value.empty()) takes += " [" + row.default_value + "]";
+            if (is_number) what += (row.unit.empty() ? "" : ", in " + row.unit) + ": " + row.accepted();
+            sub->add_option_function<std::string>(
+                   option_of(row.name),
+                   [this, name = row.name](const std::string& text) {
+                       with_options([&] { m_settings.own_look.set(name, text); });
+                   },
+                   what)
+                ->option_text(takes);
+        }
+    }
+
     void add_viewport(CLI::App* sub, const std::string& of) {
         sub->add_option_function<std::string>(
                "--viewport", [this](const std::string& text) { m_settings.viewport = viewport_from(text); },
@@ -325,6 +379,7 @@ class Command {
         sub->add_option("--lighting", m_settings.look.light.lighting, "How bodies are shaded")
             ->transform(CLI::CheckedTransformer(lightings))
             ->option_text("rasel|lambert|blinn [rasel]");
+        add_look(sub);
         add_perturbation(sub);
     }
 
@@ -607,11 +662,15 @@ class Command {
                     const auto k = static_cast<std::size_t>(i);
                     drawings[k] = drawing_of(batch[k], extent, serial_for);
                 });
-            batch.clear();
-            for (const Drawing& drawing : drawings) {
-                out->add(drawing);
+            for (std::size_t i = 0; i < batch.size(); ++i) {
+                std::vector<std::string> left_out;
+                for (const int body : drawings[i].left_out)
+                    left_out.push_back(batch[i].bodies[static_cast<std::size_t>(body)].name);
+                tell_left_out(batch[i].number, left_out);
+                out->add(drawings[i]);
                 progress.advance();
             }
+            batch.clear();
         };
         bool any = false;
         range.for_each(*motion, [&](const FigureFrame& frame) {
@@ -646,13 +705,29 @@ class Command {
         look.lines.viewport = viewport_on(page);
         if (frame.bands.empty()) look.background = glm::dvec3(1.0);
         const FigurePicture picture(frame, view, {side, side}, look, parallel_for);
+        tell_left_out(frame.number, picture.left_out());
         return {frame.number, picture_bytes(picture, look, {side, side}, textures.sources(), parallel_for)};
+    }
+
+    /// Heights that are asked for are there.
+    static void add_heights(const std::string& file, TextureFiles& textures) {
+        try {
+            textures.add(file);
+        } catch (const Error& error) {
+            throw Error("--bump", printable(file),
+                        "must be an image, .png or .ppm, that can be opened: " + std::string(error.what()));
+        }
     }
 
     int write_film() {
         const FigureStyle style = m_settings.look.style;
         if (m_settings.viewport && style != FigureStyle::outline && style != FigureStyle::stick)
             throw Error("--viewport is of --style outline and stick alone");
+        const ParameterValues& own = m_settings.own_look;
+        with_options([&] {
+            read_figure_relief(own, own.given("bump"), m_settings.look);
+            read_figure_outlines(own, m_settings.look);
+        });
         std::unique_ptr<Motion> motion;
         const FrameRange range = range_or("all");
         Progress progress([&] { return count_of(range, *motion); });
@@ -664,9 +739,10 @@ class Command {
         const SeenExtent extent = extent_of(range, *motion);
         const ParallelFor parallel_for = threads_for(thread_count());
         if (m_settings.look.style == FigureStyle::textured) m_settings.look.textures = motion->images();
-        const TextureFiles textures(
-            m_settings.source.path, m_settings.look.textures,
-            [](const std::string& what) { std::cerr << "anamorph-figure: " << one_line(what) << "\n"; });
+        TextureFiles textures(m_settings.source.path, m_settings.look.textures, [](const std::string& what) {
+            std::cerr << "anamorph-figure: " << one_line(what) << "\n";
+        });
+        if (own.given("bump")) add_heights(own.text("bump"), textures);
         std::unique_ptr<FilmWriter> out;
         range.for_each(*motion, [&](const FigureFrame& frame) {
             if (!out) out = film_writer(side, rate);

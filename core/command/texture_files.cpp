@@ -155,4 +155,11 @@ TextureFiles::TextureFiles(const std::string& script, const std::vector<std::str
     }
 }
 
+void TextureFiles::add(const std::string& file) {
+    std::error_code code;
+    if (!fs::is_regular_file(file, code)) throw Error("there is no such file");
+    m_textures.emplace_back(new Texture(read_picture(file)));
+    m_sources.push_back(&m_textures.back()->pyramid);
+}
+
 }  // namespace anamorph::command

@@ -25,7 +25,10 @@ class TextureFiles {
     TextureFiles(const std::string& script, const std::vector<std::string>& names,
                  const std::function<void(const std::string& what)>& warn);
 
-    /// In the order of their names, null where one is missing.
+    /// Adds the picture of a file, .png or .ppm, behind those. Throws Error.
+    void add(const std::string& file);
+
+    /// In the order of their names, null where one is missing; then what add() added.
     const std::vector<const Source*>& sources() const { return m_sources; }
 
   private:

@@ -701,6 +701,70 @@ class Film(Case):
             self.assertEqual((result.returncode, self.read("f.0001.png")), (0, plain), wrong)
             self.assertIn("cannot be read", result.stderr)
 
+    @unittest.skipUnless(CAIRO, "built without cairo")
+    def test_solids_heights_and_levels_are_drawn(self):
+        script = self.write("s.n", scene(("e", (400, 300, 200), (500, 500, 500))))
+        ppm = lambda brightness: b"P6 64 32 255\n" + b"".join(bytes([brightness(x)] * 3) for _ in range(32) for x in range(64))
+        self.write("waves.ppm", ppm(lambda x: 60 * (x % 4)))
+        self.write("level.ppm", ppm(lambda x: 100))
+
+        def frame(*options):
+            self.output("film", script, "-o", self.path("f.png"), "--size", "60", "--frame", "1", *options)
+            return self.read("f.0001.png")
+
+        plain = frame()
+        solids = [frame("--solid", word) for word in ("wood", "marble", "checker")]
+        self.assertEqual(len({plain, *solids}), 4)
+        self.assertEqual(frame("--solid", "none"), plain)
+        # Eight rings to a scale, as the presets are.
+        self.assertNotEqual(frame("--solid", "wood", "--solid-scale", "50"), solids[0])
+        self.assertNotEqual(frame("--solid", "wood", "--solid-samples", "1"), solids[0])
+        own = ("--solid", "formula", "--red", "own_red", "--green", "own_green")
+        self.assertEqual(frame(*own), plain)
+        self.assertNotEqual(frame(*own, "--blue", "k+x/scale", "--let", "k=0.5"), plain)
+        lit = frame("--lighting", "blinn")
+        waves = ("--lighting", "blinn", "--bump", self.path("waves.ppm"))
+        self.assertEqual(frame(*waves[:3], self.path("level.ppm")), lit)
+        self.assertEqual(frame(*waves, "--bump-scale", "0"), lit)
+        self.assertNotEqual(frame(*waves), lit)
+        outline = ("--style", "outline", "--outlines")
+        lines = {word: frame(*outline, word) for word in ("limbs", "boxes", "contours", "cylinders")}
+        self.assertEqual(len(set(lines.values())), 4)
+        self.assertEqual(frame("--style", "outline"), lines["limbs"])
+        # An error of .268 of 24 pixels is that of a box.
+        self.assertEqual(frame(*outline, "levels", "--simple-tol", "7"), lines["boxes"])
+        self.assertEqual(frame(*outline, "levels", "--simple-tol", "1"), lines["contours"])
+
+    @unittest.skipUnless(CAIRO, "built without cairo")
+    def test_bodies_that_cylinders_leave_out_are_named(self):
+        script = self.write("s.n", scene(("far", (40, 30, 20), (500, 500, 500)), ("near", (40, 30, 20), (500, 500, 100))))
+        for command in (["film", "--style", "outline"], ["svg"]):
+            result = subprocess.run([PROGRAM, command[0], script, "-o", self.path("f.png"), "--frame", "1", "--outlines",
+                                     "cylinders", "--perspective", "400", *command[1:]], capture_output=True, timeout=100, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("frame 1: cylinders before the near plane are left out: near", result.stderr, command)
+
+    def test_looks_that_mean_nothing_are_refused(self):
+        bad = self.write("bad.ppm", b"P6 9")
+        for options, said in ((["--solid", "iron"], "--solid=iron: must be one of"), (["--solid-scale", "9"], "--solid-scale=9: must be given with solid"),
+                              (["--solid", "wood", "--solid-scale", "nan"], "--solid-scale=nan: must be a number from 0.001 to 1e+06"),
+                              (["--solid", "wood", "--solid-samples", "17"], "--solid-samples=17: must be an integer from 1 to 16"),
+                              (["--solid", "wood", "--solid-samples", "2147483648"], "--solid-samples"),
+                              (["--red", "x"], "--red=x: is of solid=formula alone"), (["--solid", "formula", "--let", "k="], "--let"),
+                              (["--solid", "formula", "--green", "x+"], "--green=x+: column 3"),
+                              (["--solid", "formula", "--blue", "nothing"], "--blue"),
+                              (["--bump-scale", "3"], "--bump-scale=3: must be given with bump"),
+                              (["--bump", self.path("none.ppm")], "there is no such file"), (["--bump", bad], "is cut off"),
+                              (["--bump", bad, "--bump-scale", "inf"], "--bump-scale=inf"),
+                              (["--style", "stick", "--solid", "wood"], "--solid=wood: is of styles shaded and textured alone"),
+                              (["--outlines", "boxes"], "--outlines=boxes: is of style outline alone"),
+                              (["--style", "outline", "--simple-tol", "3"], "--simple-tol=3: must be given with"),
+                              (["--style", "outline", "--outlines", "levels", "--simple-tol", "0"], "--simple-tol=0: must be a number")):
+            said_here = self.error("film", WALKER, "--frame", "1", "-o", self.path("x.png"), *options)
+            self.assertIn(said, said_here)
+            self.assertLessEqual(len(said_here), 500)
+        self.assertEqual(os.listdir(self.folder), ["bad.ppm"])
+
     def test_what_cannot_be_written_is_said(self):
         self.assertIn("--output", self.error("film", WALKER))
         if shutil.which("ffmpeg"):

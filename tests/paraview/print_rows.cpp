@@ -6,6 +6,7 @@
 
 #include "anamorph/deform/deform_rows.h"
 #include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/operation/figure_look.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/projector/projector_rows.h"
@@ -20,13 +21,16 @@ void print(const anamorph::NumberRow& row) {
               << (row.ends == anamorph::NumberRow::between) << ' ' << row.integer << '\n';
 }
 
-/// The numbers that have a default, and the choices, of an operation.
-void print(const anamorph::Operation& operation) {
-    for (const anamorph::Parameter& row : *operation.parameters) {
-        const std::string name = operation.name + "_" + row.name;
-        if (row.type == anamorph::ParameterType::number && !row.default_value.empty())
+/// The numbers that have a default, and the choices, of an operation; `whole`: its whole numbers too.
+void print(const std::string& operation, const anamorph::ParameterTable& table, bool whole) {
+    for (const anamorph::Parameter& row : table) {
+        const std::string name = operation + "_" + row.name;
+        const bool is_whole = row.type == anamorph::ParameterType::whole;
+        if ((row.type == anamorph::ParameterType::number || (whole && is_whole)) &&
+            !row.default_value.empty())
             std::cout << name << ' ' << row.default_value << ' ' << anamorph::shortest(row.minimum) << ' '
-                      << anamorph::shortest(row.maximum) << ' ' << row.above_minimum << " 0 0\n";
+                      << anamorph::shortest(row.maximum) << ' ' << row.above_minimum << " 0 " << is_whole
+                      << '\n';
         if (row.type != anamorph::ParameterType::choice) continue;
         std::cout << "menu " << name;
         for (const std::string& word : row.choices) std::cout << ' ' << word;
@@ -38,7 +42,8 @@ void print(const anamorph::Operation& operation) {
 
 int main() {
     for (const anamorph::NumberRow& row : anamorph::kDeformRows) print(row);
-    print(*anamorph::find_operation("drape"));
+    print("drape", *anamorph::find_operation("drape")->parameters, false);
+    print("figure", anamorph::figure_look_table(), true);
     print(anamorph::surface::kDrapeParallelScaleRow);
     for (const anamorph::NumberRow& row : anamorph::figure::kFigureRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kProjectorRows) print(row);

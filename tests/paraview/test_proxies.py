@@ -21,7 +21,7 @@ PAPERS = ("Oka 1987", "Chapman 1986", "Kim 2003")
 NO_PROPERTY = {
     "vtkAnamorphBlendShapeReader": {"SetFileName"},  # AddFileName() takes several
     "vtkAnamorphDrape": {"SetBlendWeight", "SetPositionsConnection", "SetHeightConnection", "SetDeformationsConnection"},
-    "vtkAnamorphFigureImage": {"SetTextureMapping"},  # AddTexture() is for programs
+    "vtkAnamorphFigureImage": {"SetBumpConnection"},
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection",
                           "SetOrientation", "SetMirror", "SetDeformationName"},  # Frames and Names have them
     "vtkAnamorphDeformImage": {"SetDeformationList"},
@@ -33,11 +33,12 @@ NO_PROPERTY = {
 # The core's rows of numbers, by name. Properties have the name of their row but for these.
 ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamorphFigureOutline", "Tolerance"): "outline_tol",
           ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol",
+          ("vtkAnamorphFigureImage", "OutlineTolerance"): "figure_outline_tol",
           ("vtkAnamorphPanoramaProjection", "Tolerance"): "projection_tol",
           ("vtkAnamorphDrape", "Tolerance"): "drape_tol",
           ("vtkAnamorphDrape", "CameraParallelScale"): "drape_parallel_scale"}
 # Classes whose properties are an operation's parameters, under the same names.
-OPERATION_OF = {"vtkAnamorphDrape": "drape"}
+OPERATION_OF = {"vtkAnamorphDrape": "drape", "vtkAnamorphFigureImage": "figure"}
 # Parameters of those that are no property, as VTK has its own words for them, or does without.
 NOT_OFFERED = {"drape_data_filter", "drape_fov", "drape_scale", "drape_view", "drape_wrap", "drape_output"}
 # Numbers that the panel has in a table, where they have no range of their own.

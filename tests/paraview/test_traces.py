@@ -183,7 +183,9 @@ def figures_performed():
     apply(figures, Joints=1, Dialect=1, OutputPointsPrecision=0, Libraries=[])
     for name, values in {
             "AnamorphFigureGeometry": {"ToleranceMode": 1, "Tolerance": .5, "OutputPointsPrecision": 1},
-            "AnamorphFigureImage": {"Style": 3, "Lighting": 2, "Antialias": 0},
+            "AnamorphFigureImage": {"Style": 1, "Lighting": 2, "Antialias": 0, "Outlines": 1, "OutlineTolerance": 2, "Solid": 4,
+                                    "SolidScale": 30, "SolidSamples": 2, "SolidRed": "x/scale", "SolidGreen": "k",
+                                    "SolidBlue": "own_blue", "SolidDefinitions": "k=0.5", "BumpScale": -3, "TextureMapping": 2},
             "AnamorphFigureOutline": {"Hidden": 1, "Crossings": 1, "Connected": 1, "Tolerance": .5},
             "AnamorphFigureSkeleton": {"Mode": 2, "LevelOfDetail": 1, "Tolerance": 3}}.items():
         drawn = getattr(simple, name)(registrationName="result " + name, Input=figures)

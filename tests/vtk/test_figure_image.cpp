@@ -272,6 +272,223 @@ TEST(VtkFigureImage, ATimeThatIsAskedForIsSeen) {
     EXPECT_EQ(at(1), first);
 }
 
+/// A body that is turned, and what its own axes are in NUDES' space: z goes away.
+const Ball kTurned{{500, 500, -200}, {200, 150, 180}, {0.8, 0.3, -0.4, 0.2}};
+
+TEST(VtkFigureImage, SolidColorsAreOfThePointInTheBodysOwnAxes) {
+    const auto at = [&](int x, int y) {
+        // Where the ray in the middle of a pixel enters the ellipsoid: |M (o + t d)| = 1 in its own axes.
+        const double unit = 1000.0 / 80;
+        const glm::dvec3 o(500 + (x + 0.5 - 50) * unit, 500 + (y + 0.5 - 40) * unit, 1000), d(0, 0, -1);
+        const glm::dvec3 a = kTurned.turned_back(o - kTurned.center) / kTurned.axes,
+                         b = kTurned.turned_back(d) / kTurned.axes;
+        const double half = glm::dot(a, b) / glm::dot(b, b),
+                     root = half * half - (glm::dot(a, a) - 1) / glm::dot(b, b);
+        if (root < 0.05) return glm::dvec3(NAN);
+        glm::dvec3 own = (a + (-half - std::sqrt(root)) * b) * kTurned.axes;
+        own.z = -own.z;
+        return own;
+    };
+    const auto seen = image({kTurned}, [](Image* f) {
+        f->SetAntialias(false);
+        f->SetSolid(Image::FORMULA);
+        f->SetSolidScale(400);
+        f->SetSolidRed("k+x/scale");
+        f->SetSolidGreen("k+y/scale");
+        f->SetSolidBlue("k+z/scale");
+        f->SetSolidDefinitions("k=0.5");
+    });
+    int compared = 0;
+    for (int y = 0; y < 80; ++y)
+        for (int x = 0; x < 100; ++x) {
+            const glm::dvec3 own = at(x, y);
+            if (std::isnan(own.x) || value(seen, x, y, 3) < 255) continue;
+            // The light is the same for all three: their shares of the sum are the colors'.
+            double sum = 0, wanted = 0;
+            for (int c = 0; c < 3; ++c) sum += value(seen, x, y, c), wanted += 0.5 + own[c] / 400;
+            if (sum < 200) continue;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(value(seen, x, y, c) / sum, (0.5 + own[c] / 400) / wanted, 1.5 / sum)
+                    << x << " " << y << " " << c;
+            ++compared;
+        }
+    EXPECT_GT(compared, 100);
+}
+
+TEST(VtkFigureImage, PresetsAreFormulasAndEmptyTextsOwnColors) {
+    const auto colors = [](int solid, const char* red) {
+        const auto seen = image({kTurned}, [&](Image* f) {
+            f->SetSolid(solid);
+            f->SetSolidRed(red);
+        });
+        return numbers(seen->GetPointData()->GetScalars());
+    };
+    const auto plain = colors(Image::NONE, "");
+    EXPECT_EQ(colors(Image::FORMULA, ""), plain);
+    EXPECT_EQ(colors(Image::FORMULA, "own_red"), plain);
+    for (const int solid : {Image::WOOD, Image::MARBLE, Image::CHECKER}) {
+        EXPECT_NE(colors(solid, ""), plain) << solid;
+        EXPECT_EQ(colors(solid, "x"), colors(solid, "")) << "texts are of FORMULA alone";
+    }
+}
+
+TEST(VtkFigureImage, HeightsTurnNormals) {
+    vtkNew<vtkImageData> heights, upside_down, level;
+    for (vtkImageData* data : {heights.Get(), upside_down.Get(), level.Get()}) {
+        data->SetDimensions(64, 32, 1);
+        data->AllocateScalars(VTK_FLOAT, 1);
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const double wave = 0.5 + 0.25 * std::sin(2 * 3.14159265358979 * x / 8.0) * std::cos(0.5 * y);
+                data->SetScalarComponentFromDouble(x, y, 0, 0,
+                                                   data == level     ? 0.3
+                                                   : data == heights ? wave
+                                                                     : 1 - wave);
+            }
+    }
+    const auto lit = [&](vtkImageData* data, double scale, int mapping = Image::LATLONG) {
+        const auto seen = image({kTurned}, [&](Image* f) {
+            f->SetLighting(Image::LAMBERT);
+            f->SetBumpScale(scale);
+            f->SetTextureMapping(mapping);
+            if (data) f->SetInputData(1, data);
+        });
+        return numbers(seen->GetPointData()->GetScalars());
+    };
+    const auto difference = [](const std::vector<double>& a, const std::vector<double>& b) {
+        double most = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::fabs(a[i] - b[i]));
+        return most;
+    };
+    const auto plain = lit(nullptr, 20);
+    EXPECT_EQ(lit(level, 20), plain) << "no slope";
+    EXPECT_EQ(lit(heights, 0), plain);
+    EXPECT_GT(difference(lit(heights, 20), plain), 20);
+    // What is high in one is low in the other: the same slopes.
+    EXPECT_LE(difference(lit(upside_down, -20), lit(heights, 20)), 1);
+    EXPECT_GT(difference(lit(upside_down, 20), lit(heights, 20)), 20);
+    EXPECT_GT(difference(lit(heights, 20, Image::OCTAHEDRAL), lit(heights, 20)), 20);
+    // Alpha is the bodies' own.
+    const auto bumpy = lit(heights, 20);
+    for (std::size_t i = 3; i < plain.size(); i += 4) ASSERT_EQ(bumpy[i], plain[i]);
+}
+
+TEST(VtkFigureImage, APartOfAPictureOfHeightsIsThatOfTheWhole) {
+    vtkNew<vtkImageData> heights;
+    heights->SetDimensions(9, 300, 1);
+    heights->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    for (int y = 0; y < 300; ++y)
+        for (int x = 0; x < 9; ++x)
+            for (int c = 0; c < 3; ++c)
+                heights->SetScalarComponentFromDouble(x, y, 0, c, (x * 37 + y * y * 5 + c * 91) % 256);
+    vtkNew<Image> filter;
+    filter->SetInputData(figures({kTurned}));
+    filter->SetInputData(1, heights);
+    filter->SetViewSize(60, 40);
+    filter->Update();
+    vtkNew<vtkImageData> whole;
+    whole->DeepCopy(filter->GetOutput());
+    const int extent[6] = {30, 35, 10, 25, 0, 0};
+    filter->Modified();
+    filter->UpdateExtent(extent);
+    ASSERT_EQ(filter->GetOutput()->GetNumberOfPoints(), 6 * 16);
+    for (int y = 10; y <= 25; ++y)
+        for (int x = 30; x <= 35; ++x)
+            for (int c = 0; c < 4; ++c)
+                ASSERT_EQ(value(filter->GetOutput(), x, y, c), value(whole, x, y, c)) << x << " " << y;
+    // Blocks of composite data have the same heights.
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetNumberOfBlocks(2);
+    blocks->SetBlock(1, figures({kTurned}));
+    vtkNew<Image> several;
+    Errors errors(several);
+    several->SetInputData(blocks);
+    several->SetInputData(1, heights);
+    several->SetViewSize(60, 40);
+    several->Update();
+    EXPECT_EQ(errors.text(), "");
+    auto* output = vtkMultiBlockDataSet::SafeDownCast(several->GetOutputDataObject(0));
+    ASSERT_TRUE(output);
+    auto* second = vtkImageData::SafeDownCast(output->GetBlock(1));
+    ASSERT_TRUE(second);
+    EXPECT_EQ(numbers(second->GetPointData()->GetScalars()), numbers(whole->GetPointData()->GetScalars()));
+}
+
+TEST(VtkFigureImage, FormulasKnowTheFrame) {
+    Film film;
+    film.filter->SetStyle(Image::SHADED);
+    film.filter->SetSolid(Image::FORMULA);
+    film.filter->SetSolidRed("frame/8");
+    film.filter->SetSolidGreen("0.5");
+    for (const int frame : {1, 4}) {
+        film.filter->UpdateTimeStep(frame);
+        vtkImageData* seen = film.filter->GetOutput();
+        EXPECT_NEAR(value(seen, 35, 25, 0) / value(seen, 35, 25, 1), frame / 4.0, 0.02) << frame;
+    }
+}
+
+double field(vtkImageData* image, const char* name) {
+    vtkDataArray* array = image->GetFieldData()->GetArray(name);
+    return array ? array->GetComponent(0, 0) : -1;
+}
+
+TEST(VtkFigureImage, FewerLinesStandForBodies) {
+    const double radius = 100 * 80 / 1000.0, chords = 0.1;  // of kNear in pixels
+    const auto drawn = [&](int outlines, double tolerance) {
+        return image({kNear}, [&](Image* f) {
+            f->SetStyle(Image::OUTLINE);
+            f->SetOutlines(outlines);
+            f->SetOutlineTolerance(tolerance);
+        });
+    };
+    const auto length = [](vtkImageData* lines) {
+        double alpha = 0;
+        for (int y = 0; y < 80; ++y)
+            for (int x = 0; x < 100; ++x) alpha += value(lines, x, y, 3) / 255;
+        return alpha;
+    };
+    const auto limbs = drawn(Image::LIMBS, 1);
+    EXPECT_NEAR(field(limbs, "anamorph:max_error"), chords, 1e-12);
+    // A box whose half-sides are 2 / (1 + sqrt(3)) of the radius is a square from the front.
+    const double share = 2 / (1 + std::sqrt(3.0));
+    const auto box = drawn(Image::BOXES, 1);
+    EXPECT_NEAR(length(box), 8 * share * radius, 2);
+    EXPECT_NEAR(field(box, "anamorph:max_error"), (1 - share) * radius + chords, 1e-9);
+    // The levels' errors, in shares of the radius: a dot 1, its axis 1 as well, a box 0.27, contours less.
+    const auto level = [&](double tolerance) {
+        const auto lines = drawn(Image::LEVELS, tolerance);
+        EXPECT_LE(field(lines, "anamorph:max_error"), tolerance + chords + 1e-9);
+        return numbers(lines->GetPointData()->GetScalars());
+    };
+    EXPECT_EQ(level(0.3 * radius), numbers(box->GetPointData()->GetScalars()));
+    EXPECT_NE(level(1.1 * radius), level(0.3 * radius));
+    EXPECT_NEAR(length(drawn(Image::LEVELS, 1.1 * radius)), 3.14, 0.3) << "a dot, twice as wide as a line";
+    EXPECT_EQ(level(0.2 * radius),
+              numbers(drawn(Image::CONTOURS, 0.2 * radius)->GetPointData()->GetScalars()));
+    EXPECT_GT(length(drawn(Image::CYLINDERS, 1)), 4 * radius);
+    // The figures of the array Figure are levels of their own: two that are far apart are dots, and as one they are not.
+    const std::vector<Ball> apart = {{{300, 500, -200}, {60, 60, 60}, {1, 0, 0, 0}},
+                                     {{700, 500, -200}, {60, 60, 60}, {1, 0, 0, 0}}};
+    const auto ink = [&](bool named) {
+        auto input = figures(apart);
+        vtkNew<vtkStringArray> names;
+        names->SetName("Figure");
+        names->InsertNextValue("one");
+        names->InsertNextValue("two");
+        if (named) input->GetPointData()->AddArray(names);
+        vtkNew<Image> filter;
+        filter->SetInputData(input);
+        filter->SetViewSize(100, 80);
+        filter->SetStyle(Image::OUTLINE);
+        filter->SetOutlines(Image::LEVELS);
+        filter->SetOutlineTolerance(6);
+        filter->Update();
+        return length(filter->GetOutput());
+    };
+    EXPECT_NEAR(ink(true), 6.28, 0.6);
+    EXPECT_GT(ink(false), 8);
+}
+
 TEST(VtkFigureImage, NoBodiesAreAnEmptyPictureAndNoInputIsAnError) {
     const auto empty = image({}, [](Image* f) { f->SetStyle(Image::BODY_ID); });
     for (const double id : numbers(empty->GetPointData()->GetScalars())) ASSERT_EQ(id, -1);
@@ -315,6 +532,35 @@ TEST(VtkFigureImage, WhatCannotBeDoneIsAnError) {
     EXPECT_THAT(error([](Image* f) { f->SetViewSize(0, 10); }), HasSubstr("ViewSize"));
     EXPECT_THAT(error([](Image* f) { f->SetViewSize(10, 100000); }), HasSubstr("ViewSize"));
     EXPECT_THAT(error([](Image* f) { f->SetInputData(vtkNew<vtkPolyData>()); }), "");
+    // Numbers are checked whether or not the style has a use for them; texts where they are read.
+    for (const double wrong : {0.0, 1e7, -1.0, double(NAN), double(INFINITY)}) {
+        EXPECT_THAT(error([&](Image* f) { f->SetSolidScale(wrong); }),
+                    HasSubstr("must be a number from 0.001 to 1e+06"));
+        EXPECT_THAT(error([&](Image* f) { f->SetOutlineTolerance(wrong); }), HasSubstr("OutlineTolerance="));
+    }
+    for (const int wrong : {0, 17, -2147483647})
+        EXPECT_THAT(error([&](Image* f) { f->SetSolidSamples(wrong); }),
+                    HasSubstr("SolidSamples=" + std::to_string(wrong) + ": must be an integer from 1 to 16"));
+    for (const double wrong : {1.1e6, -2e6, double(NAN)})
+        EXPECT_THAT(error([&](Image* f) { f->SetBumpScale(wrong); }), HasSubstr("BumpScale="));
+    EXPECT_THAT(error([](Image* f) {
+                    f->SetSolid(Image::FORMULA);
+                    f->SetSolidGreen("x+");
+                }),
+                HasSubstr("SolidGreen=x+: column 3"));
+    EXPECT_THAT(error([](Image* f) {
+                    f->SetSolid(Image::FORMULA);
+                    f->SetSolidDefinitions("k=");
+                }),
+                HasSubstr("SolidDefinitions"));
+    EXPECT_EQ(error([](Image* f) { f->SetSolidGreen("x+"); }), "");
+    EXPECT_THAT(error([](Image* f) { f->SetInputData(1, quarters(2)); }),
+                HasSubstr("Bump has 2 slices, but must have 1"));
+    EXPECT_EQ(error([](Image* f) {
+                  f->SetInputData(1, quarters(2));
+                  f->SetStyle(Image::DEPTH);
+              }),
+              "");
 }
 
 TEST(VtkFigureImage, TheSameBitsForAnyThreads) {

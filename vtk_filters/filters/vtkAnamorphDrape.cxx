@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -28,10 +27,12 @@
 #include "anamorph/surface/drape.h"
 #include "anamorph/surface/drape_rows.h"
 #include "anamorph/surface/surface.h"
+#include "attribute_fields.h"
 #include "drape_inputs.h"
 #include "execution.h"
 #include "image_texture.h"
 #include "input_times.h"
+#include "property_names.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -127,21 +128,6 @@ vtkDataArray* array_of(vtkDataSet* data, const std::string& name) {
     return name.empty() ? data->GetPointData()->GetScalars() : data->GetPointData()->GetArray(name.c_str());
 }
 
-/// Adds a field array of one value.
-void add_field(const anamorph::Attribute& attribute, vtkDataObject* output) {
-    const auto add = [&](const auto& array, const auto& value) {
-        array->SetName(attribute.name.c_str());
-        array->InsertNextValue(value);
-        output->GetFieldData()->AddArray(array);
-    };
-    if (const auto* text = std::get_if<std::string>(&attribute.value))
-        add(vtkNew<vtkStringArray>(), *text);
-    else if (const auto* number = std::get_if<double>(&attribute.value))
-        add(vtkNew<vtkDoubleArray>(), *number);
-    else
-        add(vtkNew<vtkIntArray>(), std::get<int>(attribute.value));
-}
-
 /// A drape, by patches and blocks or by the machine, ready to draw.
 class ReadyDrape {
   public:
@@ -173,7 +159,7 @@ class ReadyDrape {
             if (attribute.name == "anamorph:max_error")
                 largest = std::get<double>(attribute.value);
             else
-                add_field(attribute, output);
+                anamorph_vtk::add_field(attribute, output);
         return largest;
     }
 
@@ -182,34 +168,18 @@ class ReadyDrape {
     std::unique_ptr<const anamorph::SolvedPicture> m_by_machine;
 };
 
-/// "height_smooth" as "HeightSmooth".
-std::string property_of(const std::string& row) {
-    static const std::map<std::string, std::string> kOthers = {{"camera", "CameraPosition"},
-                                                               {"up", "CameraViewUp"},
-                                                               {"tol", "Tolerance"},
-                                                               {"px", "FormulaX"},
-                                                               {"py", "FormulaY"},
-                                                               {"pz", "FormulaZ"},
-                                                               {"let", "FormulaDefinitions"},
-                                                               {"light", "Light"},
-                                                               {"weights", "BlendWeights"}};
-    if (const auto other = kOthers.find(row); other != kOthers.end()) return other->second;
-    std::string name;
-    bool first = true;
-    for (const char c : row) {
-        if (c != '_') name += first ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-        first = c == '_';
-    }
-    return name;
-}
-
-/// The same error, naming the property of the filter that the core's parameter comes from.
-Error of_property(const Error& error) {
-    std::string row = error.parameter();
-    // Of a machine's text as a whole: "machine: is no JSON".
-    if (row.empty() && std::string(error.what()).rfind("machine:", 0) == 0) row = "machine";
-    if (row.empty() || std::isupper(static_cast<unsigned char>(row[0]))) return error;
-    return Error(property_of(row) + std::string(error.what()).substr(row.size()));
+/// The properties that have another name than their row.
+const std::map<std::string, std::string>& other_names() {
+    static const std::map<std::string, std::string> names = {{"camera", "CameraPosition"},
+                                                             {"up", "CameraViewUp"},
+                                                             {"tol", "Tolerance"},
+                                                             {"px", "FormulaX"},
+                                                             {"py", "FormulaY"},
+                                                             {"pz", "FormulaZ"},
+                                                             {"let", "FormulaDefinitions"},
+                                                             {"light", "Light"},
+                                                             {"weights", "BlendWeights"}};
+    return names;
 }
 
 }  // namespace
@@ -507,7 +477,7 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
             this->Draw(inputs, asked, output);
             anamorph_vtk::hand_over_time({inputs, 4}, output);
         } catch (const Error& error) {
-            throw of_property(error);
+            throw anamorph_vtk::of_property(error, other_names());
         }
     };
     return anamorph_vtk::guarded(this, draw, {output});
@@ -567,7 +537,8 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
         throw Error("the texture cannot be read");
     if (this->Style != COLOR)
         say_as_vtk(this->Style, static_cast<float*>(array->GetVoidPointer(0)), array->GetNumberOfTuples());
-    if (!surfaces.missing().empty()) add_field({"anamorph:missing", surfaces.missing()}, output);
+    if (!surfaces.missing().empty())
+        anamorph_vtk::add_field({"anamorph:missing", surfaces.missing()}, output);
     this->MaxError = drape.say(output);
 }
 

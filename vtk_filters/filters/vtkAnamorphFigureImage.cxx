@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,11 +12,14 @@
 #include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/source.h"
+#include "anamorph/operation/figure_look.h"
 #include "anamorph/parameter/parameter.h"
+#include "attribute_fields.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"
 #include "image_texture.h"
+#include "property_names.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -50,15 +54,48 @@ struct Texture {
           pyramid(base, 1, 1) {}
 };
 
-/// The bodies of a data set as a frame, in their colors.
-anamorph::figure::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies, bool textured) {
-    auto* textures = vtkStringArray::SafeDownCast(data->GetPointData()->GetAbstractArray("Texture"));
-    if (textures && textures->GetNumberOfTuples() != data->GetNumberOfPoints()) textures = nullptr;
+/// The properties that have another name than their row.
+const std::map<std::string, std::string>& other_names() {
+    static const std::map<std::string, std::string> names = {{"red", "SolidRed"},
+                                                             {"green", "SolidGreen"},
+                                                             {"blue", "SolidBlue"},
+                                                             {"let", "SolidDefinitions"},
+                                                             {"outline_tol", "OutlineTolerance"}};
+    return names;
+}
+
+/// The word of a choice of the core's table.
+const std::string& word_of(const char* row, int choice) {
+    for (const anamorph::Parameter& parameter : anamorph::figure_look_table())
+        if (parameter.name == row) return parameter.choices[static_cast<std::size_t>(choice)];
+    throw anamorph::Error(std::string("there is no row ") + row);
+}
+
+/// The strings of points; null where there are none.
+vtkStringArray* strings_of(vtkPolyData* data, const char* name) {
+    auto* strings = vtkStringArray::SafeDownCast(data->GetPointData()->GetAbstractArray(name));
+    return strings && strings->GetNumberOfTuples() == data->GetNumberOfPoints() ? strings : nullptr;
+}
+
+/// The number of the frame that a time is; 0 where there is none.
+int frame_number(vtkPolyData* data) {
+    constexpr double kMost = 1e6;
+    vtkInformation* information = data->GetInformation();
+    if (!information->Has(vtkDataObject::DATA_TIME_STEP())) return 0;
+    const double time = information->Get(vtkDataObject::DATA_TIME_STEP());
+    return std::isfinite(time) ? static_cast<int>(std::lround(std::min(std::max(time, -kMost), kMost))) : 0;
+}
+
+/// The bodies of a data set as a frame, in their colors. `own_axes`: something lies on bodies by their own axes.
+anamorph::figure::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies, bool own_axes) {
+    vtkStringArray *textures = strings_of(data, "Texture"), *figures = strings_of(data, "Figure");
     vtkDataArray* offsets = data->GetPointData()->GetArray("TextureOffset");
     if (offsets &&
         (offsets->GetNumberOfComponents() != 2 || offsets->GetNumberOfTuples() != data->GetNumberOfPoints()))
         offsets = nullptr;
     anamorph::figure::FigureFrame frame;
+    frame.number = frame_number(data);
+    std::map<std::string, int> numbers;  // of figures
     auto* colors = vtkUnsignedCharArray::SafeDownCast(data->GetPointData()->GetArray("Color"));
     if (colors &&
         (colors->GetNumberOfComponents() < 3 || colors->GetNumberOfTuples() != data->GetNumberOfPoints()))
@@ -70,8 +107,14 @@ anamorph::figure::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bo
         if (colors)
             for (int c = 0; c < 3; ++c) body.color[c] = colors->GetTypedComponent(bodies.ids[i], c);
         if (textures) body.texture = textures->GetValue(bodies.ids[i]);
-        // Textures lie on bodies in NUDES' space, where z is negated: so is their own z axis, seen from here.
-        if (textured) body.shape.rotation[2] = -body.shape.rotation[2];
+        if (figures) {
+            const std::string figure = figures->GetValue(bodies.ids[i]);
+            const auto [place, is_new] = numbers.emplace(figure, static_cast<int>(frame.figures.size()));
+            if (is_new) frame.figures.push_back(figure);
+            body.figure = place->second;
+        }
+        // What lies on bodies does in NUDES' space, where z is negated: so is their own z axis, seen from here.
+        if (own_axes) body.shape.rotation[2] = -body.shape.rotation[2];
         if (offsets) offsets->GetTuple(bodies.ids[i], &body.texture_offset.x);
         frame.bodies.push_back(std::move(body));
     }
@@ -103,7 +146,15 @@ void write_color(const float* from, unsigned char* to) {
 
 }  // namespace
 
-vtkAnamorphFigureImage::vtkAnamorphFigureImage() = default;
+vtkAnamorphFigureImage::vtkAnamorphFigureImage() {
+    this->SetNumberOfInputPorts(2);
+    const anamorph::ParameterValues defaults(anamorph::figure_look_table());
+    this->SolidScale = defaults.number("solid_scale");
+    this->SolidSamples = defaults.whole("solid_samples");
+    this->BumpScale = defaults.number("bump_scale");
+    this->OutlineTolerance = defaults.number("outline_tol");
+}
+
 vtkAnamorphFigureImage::~vtkAnamorphFigureImage() = default;
 
 void vtkAnamorphFigureImage::AddTexture(const char* name, vtkImageData* image) {
@@ -118,8 +169,30 @@ void vtkAnamorphFigureImage::RemoveAllTextures() {
     this->Modified();
 }
 
+void vtkAnamorphFigureImage::SetText(std::string& member, const char* text) {
+    const std::string given = text ? text : "";
+    if (given == member) return;
+    member = given;
+    this->Modified();
+}
+
+/// Null where there are none.
+vtkImageData* vtkAnamorphFigureImage::Heights() const {
+    auto* self = const_cast<vtkAnamorphFigureImage*>(this);
+    return self->GetNumberOfInputConnections(1) > 0
+               ? vtkImageData::SafeDownCast(self->GetInputDataObject(1, 0))
+               : nullptr;
+}
+
 vtkImageData* vtkAnamorphFigureImage::GetOutput() {
     return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+int vtkAnamorphFigureImage::FillInputPortInformation(int port, vtkInformation* information) {
+    if (port == 0) return this->Superclass::FillInputPortInformation(port, information);
+    information->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+    information->Set(INPUT_IS_OPTIONAL(), 1);
+    return 1;
 }
 
 int vtkAnamorphFigureImage::FillOutputPortInformation(int, vtkInformation* information) {
@@ -151,6 +224,10 @@ int vtkAnamorphFigureImage::RequestUpdateExtent(vtkInformation*, vtkInformationV
         input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
         input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
     }
+    vtkInformation* heights = inputs[1]->GetInformationObject(0);
+    if (heights && heights->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+        heights->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
+                     heights->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
     return 1;
 }
 
@@ -178,11 +255,44 @@ anamorph::figure::FigureLook vtkAnamorphFigureImage::GetLook() const {
     look.light.lighting = kLightings[this->Lighting];
     look.light.toward = anamorph::figure::usual_light(look.light.lighting);
     look.antialias = this->Antialias;
+    look.mapping = kMappings[this->TextureMapping];
+    try {
+        this->SetOwnLook(look);
+    } catch (const anamorph::Error& error) {
+        throw anamorph_vtk::of_property(error, other_names());
+    }
     if (this->Style != SHADED || this->Textures.empty()) return look;
     look.style = FigureStyle::textured;
-    look.mapping = kMappings[this->TextureMapping];
     for (const auto& texture : this->Textures) look.textures.push_back(texture.first);
     return look;
+}
+
+/// Solid textures, heights and what stands for bodies, by the core's rows. Properties that the style has no use for are checked as well.
+void vtkAnamorphFigureImage::SetOwnLook(anamorph::figure::FigureLook& look) const {
+    anamorph::ParameterValues all(anamorph::figure_look_table()), of_style = all;
+    const auto set = [&](const char* row, const auto& value, bool is_of_style) {
+        all.set(row, value);
+        if (is_of_style) of_style.set(row, value);
+    };
+    const auto set_text = [&](const char* row, const std::string& text) {
+        if (!text.empty()) set(row, text, look.style == FigureStyle::shaded && this->Solid == FORMULA);
+    };
+    const bool has_solid = look.style == FigureStyle::shaded && this->Solid != NONE;
+    const bool has_heights = look.style == FigureStyle::shaded && this->Heights();
+    const bool is_outline = look.style == FigureStyle::outline;
+    set("solid", word_of("solid", this->Solid), has_solid);
+    set("solid_scale", this->SolidScale, has_solid);
+    set("solid_samples", static_cast<double>(this->SolidSamples), has_solid);
+    set_text("red", this->SolidRed);
+    set_text("green", this->SolidGreen);
+    set_text("blue", this->SolidBlue);
+    set_text("let", this->SolidDefinitions);
+    set("bump_scale", this->BumpScale, has_heights);
+    set("outlines", word_of("outlines", this->Outlines), is_outline);
+    set("outline_tol", this->OutlineTolerance,
+        is_outline && (this->Outlines == LEVELS || this->Outlines == CONTOURS));
+    anamorph::read_figure_relief(of_style, has_heights, look);
+    anamorph::read_figure_outlines(of_style, look);
 }
 
 void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
@@ -202,10 +312,14 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
                                                      "texture " + anamorph::printable(name)));
         sources.push_back(&textures.back()->pyramid);
     }
+    if (look.bumps) {
+        textures.push_back(std::make_unique<Texture>(this->Heights(), "Bump"));
+        sources.push_back(&textures.back()->pyramid);
+    }
+    const bool own_axes = look.style == FigureStyle::textured || look.solid || look.bumps;
     const anamorph_vtk::Bodies bodies(input);
-    const anamorph::figure::FigurePicture picture(
-        frame_of(input, bodies, look.style == FigureStyle::textured), view, {width, height}, look,
-        execution.stage(0, 0.3));
+    const anamorph::figure::FigurePicture picture(frame_of(input, bodies, own_axes), view, {width, height},
+                                                  look, execution.stage(0, 0.3));
     const int channels = anamorph::figure::channels_of(look.style);
     int extent[6];
     this->AskedExtent(extent);
@@ -244,6 +358,11 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
         unsigned char* to = new_scalars<vtkUnsignedCharArray>(image, "Colors", 4)->GetPointer(0);
         each_pixel([&](vtkIdType i, const float* from) { write_color(from, to + 4 * i); });
     }
+    if (this->Style != OUTLINE) return;
+    anamorph_vtk::add_field({"anamorph:max_error", picture.simple_error() + look.lines.tol}, image);
+    std::string left_out;
+    for (const std::string& name : picture.left_out()) left_out += (left_out.empty() ? "" : ", ") + name;
+    if (!left_out.empty()) anamorph_vtk::add_field({"anamorph:left_out", left_out}, image);
 }
 
 void vtkAnamorphFigureImage::PrintSelf(ostream& os, vtkIndent indent) {
@@ -255,5 +374,18 @@ void vtkAnamorphFigureImage::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "Lighting: " << lightings[this->Lighting] << "\n"
        << indent << "Antialias: " << this->Antialias << "\n"
        << indent << "Textures: " << this->Textures.size() << "\n"
-       << indent << "TextureMapping: " << mappings[this->TextureMapping] << "\n";
+       << indent << "TextureMapping: " << mappings[this->TextureMapping] << "\n"
+       << indent << "Solid: " << word_of("solid", this->Solid) << "\n"
+       << indent << "SolidScale: " << this->SolidScale << "\n"
+       << indent << "SolidSamples: " << this->SolidSamples << "\n";
+    const auto print_text = [&](const char* name, const std::string& text) {
+        os << indent << name << ": " << (text.empty() ? "(none)" : text) << "\n";
+    };
+    print_text("SolidRed", this->SolidRed);
+    print_text("SolidGreen", this->SolidGreen);
+    print_text("SolidBlue", this->SolidBlue);
+    print_text("SolidDefinitions", this->SolidDefinitions);
+    os << indent << "BumpScale: " << this->BumpScale << "\n"
+       << indent << "Outlines: " << word_of("outlines", this->Outlines) << "\n"
+       << indent << "OutlineTolerance: " << this->OutlineTolerance << "\n";
 }

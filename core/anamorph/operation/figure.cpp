@@ -10,11 +10,11 @@
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/figure/image/mrasel_maps.h"
-#include "anamorph/figure/image/solid_texture.h"
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script.h"
 #include "anamorph/figure/outline/fit.h"
 #include "anamorph/image/pyramid.h"
+#include "anamorph/operation/figure_look.h"
 #include "anamorph/operation/figure_mips.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/read_once.h"
@@ -133,42 +133,6 @@ ParameterTable style_rows() {
     };
 }
 
-/// Colors by formulas, and heights.
-ParameterTable relief_rows() {
-    using namespace rows;
-    std::vector<std::string> names = {"none"};
-    std::string what =
-        "of styles shaded and textured, a color at every point of a body, as if it were cut out of a block: "
-        "none";
-    for (const figure::SolidPreset& preset : figure::solid_presets()) {
-        names.push_back(preset.name);
-        what += "; " + preset.name + ", " + preset.documentation;
-    }
-    names.push_back("formula");
-    return {
-        choice("solid", "none", names, what + "; formula, by red, green and blue"),
-        number("solid_scale", "units", "100", 0.001, 1e6, "the length that formulas of solid call scale"),
-        whole("solid_samples", "", "4", 1, figure::kMostSolidSamples,
-              "of solid: a pixel's color is the mean at this number of points of it either way; what is "
-              "finer is not "
-              "averaged away"),
-        text("red",
-             "of solid=formula, a formula of x, y and z, the point in the body's own axes from its centre, "
-             "in units, of "
-             "own_red, own_green and own_blue, the body's color, from 0 to 1 as the result is, of scale and "
-             "of frame; "
-             "own_red by default"),
-        text("green", "the same; own_green by default"),
-        text("blue", "the same; own_blue by default"),
-        text("let", "definitions before these, as in k=0.3;c=cos(k)"),
-        file("bump",
-             "of styles shaded and textured: a picture of heights around each body, by mapping: the "
-             "brightness, the mean "
-             "of up to three channels, turns normals (Blinn 1978)"),
-        number("bump_scale", "units", "10", -1e6, 1e6, "how high brightness 1 is"),
-    };
-}
-
 /// Who sees them, before what.
 ParameterTable figure_view_rows() {
     using namespace rows;
@@ -189,27 +153,10 @@ ParameterTable figure_view_rows() {
     };
 }
 
-std::vector<rows::Word> outline_words() {
-    std::vector<rows::Word> words;
-    for (const auto& [word, style] : figure::kOutlineStyles) words.emplace_back(word, style);
-    return words;
-}
-
-/// The rows of lines and textures.
+/// The rows of textures, and what all styles of lines have.
 ParameterTable line_rows() {
     using namespace rows;
     return {
-        number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
-        enumeration("outlines", "limbs", outline_words(),
-                    "of style outline: limbs, the outlines of bodies; levels, each figure as a dot, sticks, "
-                    "boxes or contours, the "
-                    "first that is within outline_tol of these (Fetter); boxes; contours, across each body's "
-                    "longest axis, as few "
-                    "as hold outline_tol; cylinders, with shadow lines, circular arcs, clip and crease, "
-                    "nothing hidden (Willmert)"),
-        number("outline_tol", "pixels", shortest(figure::kSimpleTolRow.standard), figure::kSimpleTolRow.least,
-               1e6,
-               "of outlines=levels and contours: how far what stands for bodies may be from their outlines"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
         numbers("viewport", -kInfinity,
                 "of styles outline and stick: x,y,a,b: the middle, from the upper left, and the half-axes of "
@@ -231,7 +178,13 @@ ParameterTable line_rows() {
 ParameterTable make_figure_table() {
     ParameterTable table;
     for (const ParameterTable& part :
-         {script_rows(), style_rows(), relief_rows(), figure_view_rows(), line_rows()})
+         {script_rows(),
+          style_rows(),
+          figure_relief_rows(),
+          figure_view_rows(),
+          {rows::number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick")},
+          figure_outline_rows(),
+          line_rows()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
@@ -469,35 +422,6 @@ void read_viewport(const ParameterValues& values, figure::FigureLook& look) {
         throw Error("viewport", printable(text), "is of styles outline and stick alone");
 }
 
-/// Colors by formulas; of a text that is given for other values of solid nothing is kept in silence.
-void read_solid(const ParameterValues& values, figure::FigureLook& look) {
-    const std::string solid = values.text("solid");
-    for (const char* name : {"red", "green", "blue", "let"})
-        if (solid != "formula" && values.given(name))
-            throw Error(name, printable(values.text(name)), "is of solid=formula alone");
-    const bool shaded =
-        look.style == figure::FigureStyle::shaded || look.style == figure::FigureStyle::textured;
-    for (const char* name : {"solid", "bump"})
-        if (!shaded && values.given(name))
-            throw Error(name, printable(values.text(name)), "is of styles shaded and textured alone");
-    for (const char* name : {"solid_scale", "solid_samples"})
-        if (solid == "none" && values.given(name))
-            throw Error(name, printable(values.text(name)), "must be given with solid");
-    if (solid == "none") return;
-    figure::SolidLook own;
-    for (const figure::SolidPreset& preset : figure::solid_presets())
-        if (preset.name == solid) own.text = preset.text;
-    for (const auto& [name, to] : {std::pair{"red", &own.text.red}, std::pair{"green", &own.text.green},
-                                   std::pair{"blue", &own.text.blue}, std::pair{"let", &own.text.let}})
-        if (values.given(name)) *to = values.text(name);
-    own.scale = values.number("solid_scale");
-    own.samples = values.whole("solid_samples");
-    if (!values.toggle("antialias")) own.samples = 1;
-    // What is wrong with a text is said before a frame is drawn.
-    parse_solid(own.text, {});
-    look.solid = own;
-}
-
 /// A colour, or bands.
 void read_background(const ParameterValues& values, figure::FigureLook& look) {
     if (!values.given("background")) return;
@@ -519,11 +443,6 @@ void read_background(const ParameterValues& values, figure::FigureLook& look) {
     }
 }
 
-/// Do the lines of a style hold DrawingOptions::simple_tol? Boxes and cylinders are off by what they come to.
-bool holds_tolerance(figure::OutlineStyle style) {
-    return style == figure::OutlineStyle::levels || style == figure::OutlineStyle::contours;
-}
-
 FigureRequest read_request(const ParameterValues& values) {
     FigureRequest request;
     request.size = rows::size_of(values, {kDefaultSide, kDefaultSide});
@@ -538,21 +457,11 @@ FigureRequest read_request(const ParameterValues& values) {
     look.mapping = rows::chosen<figure::BodyMapping>(values, "mapping");
     read_filter(values, look);
     look.backdrop = values.given("backdrop");
-    read_solid(values, look);
-    look.bumps = values.given("bump");
-    if (!look.bumps && values.given("bump_scale"))
-        throw Error("bump_scale", printable(values.text("bump_scale")), "must be given with bump");
-    look.bump_scale = values.number("bump_scale");
+    read_figure_relief(values, values.given("bump"), look);
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
-    look.lines.style = rows::chosen<figure::OutlineStyle>(values, "outlines");
-    look.lines.simple_tol = values.number("outline_tol");
-    if (look.style != figure::FigureStyle::outline && values.given("outlines"))
-        throw Error("outlines", values.text("outlines"), "is of style outline alone");
-    if (!holds_tolerance(look.lines.style) && values.given("outline_tol"))
-        throw Error("outline_tol", printable(values.text("outline_tol")),
-                    "must be given with outlines=levels or outlines=contours");
+    read_figure_outlines(values, look);
     read_viewport(values, look);
     request.camera = three(values, "camera", -kFar, kFar);
     request.place = three(values, "place", -kFar, kFar);
@@ -656,7 +565,7 @@ class Figures final : public Pictures {
         }
         const bool chords = m_request.look.style == figure::FigureStyle::outline;
         const figure::DrawingOptions& lines = m_request.look.lines;
-        const bool holds = holds_tolerance(lines.style);
+        const bool holds = figure::holds_tolerance(lines.style);
         if (lines.style == figure::OutlineStyle::limbs || holds)
             picture.says.push_back(
                 {"anamorph:tol", chords ? kChordError + (holds ? lines.simple_tol : 0) : 0.0});

@@ -18,4 +18,9 @@ inline constexpr std::pair<const char*, OutlineStyle> kOutlineStyles[] = {
     {"contours", OutlineStyle::contours},
     {"cylinders", OutlineStyle::cylinders}};
 
+/// Do the lines of a style hold DrawingOptions::simple_tol? Boxes and cylinders are off by what they come to.
+constexpr bool holds_tolerance(OutlineStyle style) {
+    return style == OutlineStyle::levels || style == OutlineStyle::contours;
+}
+
 }  // namespace anamorph::figure
