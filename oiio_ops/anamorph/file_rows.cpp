@@ -28,7 +28,7 @@ int unit_of(const OIIO::ImageSpec& spec) {
 }  // namespace
 
 FileRows::FileRows(Opener open, const std::string& file, int subimage, const OIIO::ImageSpec& spec,
-                   const Pixels& pixels)
+                   const Pixels& pixels, std::unique_ptr<OIIO::ImageInput> opened)
     : m_open(std::move(open)),
       m_file(file),
       m_state(file_state(file)),
@@ -38,7 +38,11 @@ FileRows::FileRows(Opener open, const std::string& file, int subimage, const OII
       m_unit(unit_of(spec)),
       m_pages(bytes_of(spec, pixels)),
       m_view(packed_view<const std::byte>(m_pages.data(), pixels.type, spec.width, spec.height,
-                                          pixels.channels)) {}
+                                          pixels.channels)) {
+    if (!opened || open_files >= kMostOpen) return;
+    ++open_files;
+    m_input = std::move(opened);
+}
 
 FileRows::~FileRows() {
     if (m_input) --open_files;
@@ -73,8 +77,8 @@ void FileRows::decode(int first, int end) {
     if (!m_failure.empty()) throw Error(m_failure);
     if (m_input) --open_files;
     std::unique_ptr<OIIO::ImageInput> input = std::move(m_input);
-    // Not every reader finds its way back.
-    if (!input || first != m_next) input = m_open();
+    // Not every reader finds its way back; one that has read no row can begin anywhere.
+    if (!input || (m_next > 0 && first != m_next)) input = m_open();
     if (!input) throw Error(OIIO::geterror());
     const bool is_there = input->seek_subimage(m_subimage, 0);
     const OIIO::ImageSpec& spec = input->spec();

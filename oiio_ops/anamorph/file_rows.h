@@ -32,10 +32,10 @@ class FileRows {
         int channels;
         OIIO::TypeDesc format;
     };
-    /// Reads nothing yet. `file`: its name. `spec`: that of the file when it was opened. Throws
-    /// std::bad_alloc.
+    /// Reads nothing yet. `file`: its name. `spec`: that of the file when it was opened. `opened`: the file, where it is open
+    /// already, or null. Throws std::bad_alloc.
     FileRows(Opener open, const std::string& file, int subimage, const OIIO::ImageSpec& spec,
-             const Pixels& pixels);
+             const Pixels& pixels, std::unique_ptr<OIIO::ImageInput> opened = nullptr);
     ~FileRows();
     FileRows(const FileRows&) = delete;
     FileRows& operator=(const FileRows&) = delete;

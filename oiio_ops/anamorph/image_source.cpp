@@ -288,8 +288,15 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std
 
 CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level)
     : CacheSource(std::move(cache), name, name, subimage, first_level) {
-    read_levels([&](int level) { return spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level); },
-                [&] { return m_cache->geterror(); });
+    read_levels(
+        [&](int level) {
+            ImageSpec spec = spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level);
+            if (m_subimage == 0 && m_first_level + level == 0 && spec.format != OIIO::TypeUnknown &&
+                is_named_jpeg(name))
+                add_photo_sphere(spec, name);
+            return spec;
+        },
+        [&] { return m_cache->geterror(); });
 }
 
 CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
@@ -300,10 +307,16 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std
 
 CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage)
     : CacheSource(std::move(cache), name, shown, subimage, 0) {
-    const auto file = open_as_cache_does(*m_cache, name);
-    read_levels([&](int level) { return file ? file->spec(m_subimage, level) : ImageSpec(); },
-                [&] { return file ? file->geterror() : OIIO::geterror(); });
-    if (subimage == 0) m_parts = names_of_parts(*file);
+    m_file = open_as_cache_does(*m_cache, name);
+    read_levels(
+        [&](int level) {
+            ImageSpec spec = m_file ? m_file->spec(m_subimage, level) : ImageSpec();
+            if (m_subimage == 0 && level == 0 && spec.format != OIIO::TypeUnknown && is_named_jpeg(name))
+                add_photo_sphere(spec, name);
+            return spec;
+        },
+        [&] { return m_file ? m_file->geterror() : OIIO::geterror(); });
+    if (subimage == 0) m_parts = names_of_parts(*m_file);
 }
 
 void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not) {
@@ -313,8 +326,6 @@ void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::st
         throw Error("source \"" + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why));
     }
     check_source(base, m_shown);
-    if (m_subimage == 0 && m_first_level == 0 && is_named_jpeg(m_name.string()))
-        add_photo_sphere(base, m_name.string());
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);
@@ -377,11 +388,12 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
 }
 
 void CacheSource::keep_rows() try {
+    std::unique_ptr<OIIO::ImageInput> file = std::move(m_file);
     if (levels() > 1 || spec().tile_width > 0) return;
     const std::string& name = m_name.string();
-    m_rows = std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); },
-                                        name, m_subimage, spec(),
-                                        FileRows::Pixels{m_type, m_channels, oiio_type(m_type)});
+    m_rows = std::make_unique<FileRows>(
+        [cache = m_cache, name] { return open_as_cache_does(*cache, name); }, name, m_subimage, spec(),
+        FileRows::Pixels{m_type, m_channels, oiio_type(m_type)}, std::move(file));
 } catch (const std::bad_alloc&) {
     // Larger than the address space that is left: by the cache, then.
 }

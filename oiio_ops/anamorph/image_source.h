@@ -141,6 +141,7 @@ class CacheSource final : public Source {
     int m_alpha = -1, m_channels = 0;
     std::vector<Level> m_levels;
     std::vector<std::string> m_parts;
+    std::unique_ptr<OIIO::ImageInput> m_file;  ///< open since its header was read, until rows are kept
     std::unique_ptr<FileRows> m_rows;
     ReadStored m_read_stored;
     mutable std::mutex m_mutex;

@@ -10,6 +10,7 @@
 
 #include "anamorph/chain/joined.h"
 #include "anamorph/face_source.h"
+#include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
 #include "anamorph/lens_database.h"
 #include "anamorph/metadata.h"
@@ -103,14 +104,17 @@ class Opening {
     std::vector<std::string> parts_of(const SideFile& file);
 
   private:
-    /// What is known of a file.
+    /// What is known of a part of a file.
     struct Header {
-        std::vector<std::string> parts;
-        std::map<int, std::vector<ImageSpec>> levels;  ///< levels of each part
+        std::vector<std::string> parts;  ///< names of all parts, by the first
+        std::vector<ImageSpec> levels;
     };
+    std::shared_ptr<const Header> header_of(const SideFile& file, int part);
 
     RecipeReader m_reader;
-    std::map<std::string, Header> m_headers;                       ///< headers of files, by name
+    std::map<std::pair<std::string, int>, std::shared_ptr<const Header>> m_headers;  ///< by name and part
+    std::map<std::pair<std::string, int>, std::unique_ptr<CacheSource>>
+        m_opened;  ///< files whose headers have been read, until they are asked for
     std::map<std::string, std::shared_ptr<const Content>> m_open;  ///< by identity
 };
 
@@ -628,22 +632,40 @@ std::shared_ptr<const Content> Opening::open(const std::string& name, const std:
 }
 
 std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file, int part) {
-    const std::string name = cached_name(file.name, file.identity);
-    Header& header = m_headers[file.name];
-    const auto known = header.levels.find(part);
-    const bool is_new = known == header.levels.end();
-    auto source = is_new
-                      ? std::make_unique<CacheSource>(shared_cache(), name, file.name, part)
-                      : std::make_unique<CacheSource>(shared_cache(), name, file.name, part, [&](int level) {
-                            const auto i = static_cast<std::size_t>(level);
-                            return i < known->second.size() ? known->second[i] : ImageSpec();
-                        });
-    if (is_new) {
-        header.levels[part] = source->specs();
-        if (part == 0) header.parts = source->parts();
-    }
+    const std::shared_ptr<const Header> header = header_of(file, part);
+    std::unique_ptr<CacheSource> source = std::move(m_opened[{file.name, part}]);
+    if (!source)
+        source = std::make_unique<CacheSource>(
+            shared_cache(), cached_name(file.name, file.identity), file.name, part, [&](int level) {
+                const auto i = static_cast<std::size_t>(level);
+                return i < header->levels.size() ? header->levels[i] : ImageSpec();
+            });
     source->keep_rows();
     return source;
+}
+
+/// The header of a part of a file, read once while the file is what it is; the file is then kept for open_file().
+std::shared_ptr<const Opening::Header> Opening::header_of(const SideFile& file, int part) {
+    const std::pair<std::string, int> key(file.name, part);
+    std::shared_ptr<const Header>& header = m_headers[key];
+    if (header) return header;
+    const auto read = [&] {
+        std::unique_ptr<CacheSource>& source = m_opened[key];
+        source = std::make_unique<CacheSource>(shared_cache(), cached_name(file.name, file.identity),
+                                               file.name, part);
+        return std::make_shared<const Header>(Header{source->parts(), source->specs()});
+    };
+    constexpr std::size_t kKept = 256;
+    static auto& memo = *new Memo<const Header>(kKept);
+    int unassociated = 0;
+    shared_cache()->getattribute("unassociatedalpha", unassociated);
+    // What has no state may change without a trace.
+    header = file_state(file.name).empty()
+                 ? read()
+                 : memo.get(std::to_string(part) + " " + std::to_string(unassociated) + "\n" + file.name +
+                                "\n" + file.identity,
+                            read);
+    return header;
 }
 
 SideFile face_of(const FaceFiles& faces, std::size_t i) {
@@ -670,8 +692,7 @@ std::vector<std::string> Opening::parts_of(const SideFile& file) {
     if (operation_of(file.name))
         return std::vector<std::string>(
             static_cast<std::size_t>(in_recipe(file.name, [&] { return open(file.name, {}); })->subimages()));
-    if (m_headers[file.name].parts.empty()) open_file(file, 0);
-    return m_headers[file.name].parts;
+    return header_of(file, 0)->parts;
 }
 
 }  // namespace

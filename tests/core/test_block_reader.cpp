@@ -99,7 +99,8 @@ TEST(BlockReader, ReadsNoByteThatIsNotTheSources) {
     for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
         for (const double below : {1e-9, 1e-6, 1e-3, 0.4999, 0.5, 0.9999999}) {
             // The last row of points lies just above the lower edge, or as far from it as the filter reaches.
-            for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+            for (const Filter filter :
+                 {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic}) {
                 const double reach = filter == Filter::nearest ? 0 : filter == Filter::bilinear ? 0.5 : 1.5;
                 const FunctionMap map(64, 28, kind, [&](double x, double y) {
                     return Point<double>{x + 8, y + 4.5 - reach - below};
@@ -153,7 +154,8 @@ TEST(BlockReader, RowsMayStandGigabytesApart) {
     view.row_stride = kStride;
     const MemorySource apart(view);
     for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic}) {
             const FunctionMap map(48, 40, kind, [](double x, double y) {
                 return Point<double>{1.1 * x + 0.013 * y + 3.3, 1.07 * y + 0.1 * x + 4.4};
             });
@@ -168,7 +170,8 @@ TEST(BlockReader, PointsThatAreNoneOrFarAwayHarmNoOthers) {
     const Pyramid source(base);
     const double far[] = {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e9, -1e9, 1e300, -1e300};
     for (const Kind kind : {Kind::exact, Kind::computed})
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias})
             for (const double bad : far) {
                 SCOPED_TRACE(::testing::Message() << "kind " << static_cast<int>(kind) << " filter "
                                                   << static_cast<int>(filter) << " at " << bad);
@@ -211,7 +214,8 @@ TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
         for (const int alpha : {-1, channels - 1}) {
             const MemorySource source(texels.read(), alpha);
             for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
-                for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic})
+                for (const Filter filter :
+                     {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic})
                     for (const Wrap wrap : {Wrap::black, Wrap::mirror}) {
                         SCOPED_TRACE(::testing::Message()
                                      << channels << " channels, alpha " << alpha << ", kind "
@@ -270,7 +274,8 @@ void expect_read_around_the_sphere(PixelSpacing spacing) {
             return Point<double>{step * x - 1.3 * y + x0, step * y + 0.4 * x + y0};
         };
         for (const Kind kind : {Kind::exact, Kind::computed})
-            for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+            for (const Filter filter :
+                 {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic}) {
                 SCOPED_TRACE(::testing::Message()
                              << step << " texels a step from " << x0 << ", " << y0 << ", kind "
                              << static_cast<int>(kind) << ", filter " << static_cast<int>(filter));
@@ -339,7 +344,8 @@ TEST(BlockReader, PointsApartHaveTheSameBitsWhereverTheirTexelsStand) {
                     return to;
                 };
                 for (const Kind kind : {Kind::exact, Kind::computed})
-                    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+                    for (const Filter filter :
+                         {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic}) {
                         SCOPED_TRACE(::testing::Message()
                                      << step << " texels a step, " << aside << " aside, type "
                                      << static_cast<int>(type) << ", " << channels << " channels, kind "
@@ -368,7 +374,7 @@ TEST(BlockReader, PointsFarApartAreNoNumbersOnlyByTheirOwnTexels) {
         return Point<double>{24.7 * x - 1.3 * y - 30.4137, 25.9 * y + 0.1 * x - 20.3219};
     };
     const std::pair<Filter, int> filters[] = {
-        {Filter::nearest, 1}, {Filter::bilinear, 2}, {Filter::bicubic, 4}};
+        {Filter::nearest, 1}, {Filter::bilinear, 2}, {Filter::bicubic, 4}, {Filter::sharp_bicubic, 4}};
     for (const auto& [filter, side] : filters) {
         SCOPED_TRACE(side);
         Picture texels(kWidth, kHeight, 3);

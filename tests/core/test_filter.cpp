@@ -56,22 +56,78 @@ const Chart& flat() {
 TEST(Weights, SumToOneAndInterpolate) {
     for (int i = 0; i < 1000; ++i) {
         const double t = i / 1000.0;
-        const auto w = catmull_rom_weights(t);
+        const auto w = cubic_weights(t, -0.5);
         EXPECT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-15);
         // First and second moments: polynomials of degree 2 are reproduced.
         EXPECT_NEAR(-w[0] + w[2] + 2 * w[3], t, 1e-15);
         EXPECT_NEAR(w[0] + w[2] + 4 * w[3], t * t, 1e-14);
-        const auto f = catmull_rom_weights(static_cast<float>(t));
+        const auto f = cubic_weights(static_cast<float>(t), kBicubicSlope);
         for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(f[k], w[k], 2e-7);
         const auto b = bilinear_weights(t);
         EXPECT_EQ(b[0] + b[1], 1);
         EXPECT_EQ(b[1], t);
     }
-    const auto at_texel = catmull_rom_weights(0.0);
-    EXPECT_EQ(at_texel[0], 0);
-    EXPECT_EQ(at_texel[1], 1);
-    EXPECT_EQ(at_texel[2], 0);
-    EXPECT_EQ(at_texel[3], 0);
+    // In the middle of a texel, of either side, all others have no weight at all.
+    for (const bool sharp : {false, true})
+        for (const std::size_t middle : {0u, 1u}) {
+            const auto in_float = cubic_weights(static_cast<float>(middle), cubic_slope(sharp));
+            const auto in_double = cubic_weights(static_cast<double>(middle), double{cubic_slope(sharp)});
+            for (std::size_t k = 0; k < 4; ++k) {
+                EXPECT_EQ(in_float[k], k == middle + 1 ? 1 : 0);
+                EXPECT_EQ(in_double[k], k == middle + 1 ? 1 : 0);
+            }
+        }
+}
+
+/// The cubics of Mitchell and Netravali 1988, eq. 8, by their B and C.
+long double mitchell_netravali(long double b, long double c, long double x) {
+    x = std::fabs(x);
+    if (x < 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
+    if (x < 2)
+        return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x +
+                (8 * b + 24 * c)) /
+               6;
+    return 0;
+}
+
+TEST(Weights, CubicsAreThoseOfTheirC) {
+    for (const bool sharp : {false, true}) {
+        const long double c = sharp ? 2.0L / 3 : 0.5L;
+        for (int i = 0; i <= 1000; ++i) {
+            const double t = i / 1000.0;
+            const auto w = cubic_weights(t, double{cubic_slope(sharp)});
+            EXPECT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-15);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const long double expected =
+                    mitchell_netravali(0, c, static_cast<long double>(k) - 1 - static_cast<long double>(t));
+                EXPECT_NEAR(static_cast<double>(w[k] - expected), 0, sharp ? 2e-8 : 1e-15);
+            }
+        }
+    }
+}
+
+TEST(Weights, TheSharpCubicKeepsAFifthOfTheSamplingRate) {
+    // The response is the integral of the kernel times the cosine: weights of points that lie evenly between texels.
+    const auto response = [](bool sharp, long double frequency) {
+        constexpr int kPoints = 4096;
+        const long double pi = std::acos(-1.0L);
+        long double sum = 0;
+        for (int i = 0; i < kPoints; ++i) {
+            const long double t = (i + 0.5L) / kPoints;
+            const auto w = cubic_weights(static_cast<double>(t), double{cubic_slope(sharp)});
+            for (std::size_t k = 0; k < 4; ++k)
+                sum += static_cast<long double>(w[k]) *
+                       std::cos(2 * pi * frequency * (static_cast<long double>(k) - 1 - t));
+        }
+        return static_cast<double>(sum / kPoints);
+    };
+    EXPECT_NEAR(response(true, 0.2L), 0.9976, 5e-5);
+    EXPECT_NEAR(response(false, 0.2L), 0.973, 5e-4);
+    for (int i = 0; i <= 200; ++i) {
+        const double kept = response(true, i / 1000.0L);
+        EXPECT_GE(kept, 0.99);
+        EXPECT_LE(kept, 1.0076);
+    }
 }
 
 TEST(PointSampler, NearestReadsTheTexelUnderThePoint) {
@@ -115,7 +171,7 @@ TEST(PointSampler, BilinearReproducesLinearAndBicubicQuadraticFunctions) {
 TEST(PointSampler, TexelCentresAreReadExactly) {
     Picture picture(flat(), 1, PixelType::float32, Wrap::automatic);
     picture.fill([](double x, double y, int) { return std::sin(13 * x + 7 * y); });
-    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic})
+    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic})
         for (int y = 0; y < 30; ++y)
             for (int x = 0; x < 40; ++x)
                 ASSERT_EQ(picture.sample(filter, x + 0.5, y + 0.5)[0],
@@ -129,7 +185,8 @@ TEST(PointSampler, NanAndInfinityStayInTheirFootprint) {
             return std::floor(x) == 12 && std::floor(y) == 9 ? poison : 1.0;
         });
         // Texel 12 has its centre at 12.5; a filter of reach r sees it from points nearer than r.
-        const std::pair<Filter, double> reaches[] = {{Filter::bilinear, 1}, {Filter::bicubic, 2}};
+        const std::pair<Filter, double> reaches[] = {
+            {Filter::bilinear, 1}, {Filter::bicubic, 2}, {Filter::sharp_bicubic, 2}};
         for (const auto& [filter, reach] : reaches)
             for (double y = 6; y < 13; y += 0.25)
                 for (double x = 9; x < 16; x += 0.25) {
@@ -150,7 +207,8 @@ TEST(PointSampler, PointsFarAwayOrNoPointsAreSafe) {
     for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
         Picture picture(flat(), 1, PixelType::float32, wrap);
         picture.fill([](double, double, int) { return 2; });
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic})
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic})
             for (const double far : {1e9, 1e30, kInfinity, -1e30, -kInfinity}) {
                 const float expected = wrap == Wrap::automatic || wrap == Wrap::black ? 0 : 2;
                 EXPECT_EQ(picture.sample(filter, far, 5.25)[0], expected);

@@ -372,7 +372,8 @@ TEST(Lens, IsRefusedWherePicturesHaveNone) {
         try {
             const FaceGrid faces = faces_of(projection);
             const int across = std::max(1, faces.columns), down = std::max(1, faces.rows);
-            static_cast<void>(Chart(projection, 64 * across, 64 * down, 0, PixelSpacing::edges, "src", 1,
+            const double fov = rows_turn(projection) ? 200 : 0;
+            static_cast<void>(Chart(projection, 64 * across, 64 * down, fov, PixelSpacing::edges, "src", 1,
                                     LensModel::parse(text)));
         } catch (const Error& error) {
             EXPECT_EQ(error.parameter(), "srclens");
@@ -384,13 +385,16 @@ TEST(Lens, IsRefusedWherePicturesHaveNone) {
         const Lensed lensed = with_projection(p, [](auto formulas) { return formulas.lensed; });
         const bool none = lensed == Lensed::no;
         EXPECT_EQ(rule(p, "ptlens:b=0.01") != "", none) << name_of(p);
-        EXPECT_EQ(rule(p, "3de4:k1=0.01") != "", none) << name_of(p);
-        EXPECT_EQ(rule(p, "division:k1=-0.01") != "", none) << name_of(p);
+        const bool turns = p == Projection::cylindrical || p == Projection::equirectangular;
+        EXPECT_EQ(rule(p, "3de4:k1=0.01") != "", none || turns) << name_of(p);
+        EXPECT_EQ(rule(p, "division:k1=-0.01") != "", none || turns) << name_of(p);
         EXPECT_EQ(rule(p, "brown:k1=0.01") != "", p != Projection::rectilinear) << name_of(p);
         EXPECT_EQ(rule(p, "poly:k0=0.01") != "", none) << name_of(p);
         EXPECT_EQ(rule(p, "kb4:k1=0.01") != "", p != Projection::fisheye) << name_of(p);
         EXPECT_EQ(rule(p, "ocam:a0=-20") != "", p != Projection::stereographic) << name_of(p);
     }
+    EXPECT_THAT(rule(Projection::cylindrical, "division:k1=0.1"),
+                HasSubstr("must be ptlens or poly for cylindrical"));
     EXPECT_THAT(rule(Projection::cubemap, "ptlens"),
                 HasSubstr("must be none for cubemap, which has no lens"));
     EXPECT_THAT(rule(Projection::fisheye, "brown:k1=1"), HasSubstr("brown must be of a rectilinear picture"));

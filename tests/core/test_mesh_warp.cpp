@@ -159,7 +159,8 @@ TEST(MeshWarp, HolesOfAnStMapShowNothingAndNothingElseChanges) {
     };
     MeshWarpOptions options;
     for (const double tol : {0.0, 0.01})
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias}) {
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias}) {
             SCOPED_TRACE(::testing::Message() << tol << " " << static_cast<int>(filter));
             options.tol = tol;
             options.filter = filter;

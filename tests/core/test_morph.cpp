@@ -85,7 +85,8 @@ TEST(Morph, AtItsEndsItIsThePicturesToTheBit) {
         std::fill(poison.pixels.begin(), poison.pixels.end(), NAN);
         const MemorySource sa(end ? poison.source() : kept.source()),
             sb(end ? kept.source() : poison.source());
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias})
             for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact}) {
                 MorphOptions options;
                 options.t = end;

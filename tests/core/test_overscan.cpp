@@ -353,8 +353,8 @@ void expect_one(const Picture& whole, const Picture& framed, const Large& large,
 }
 
 // A pixel of the nearest texel, where two meet, may be either's.
-constexpr Filter kFilters[] = {Filter::bilinear, Filter::bicubic, Filter::antialias, Filter::pyramid,
-                               Filter::summed_area};
+constexpr Filter kFilters[] = {Filter::bilinear,  Filter::bicubic, Filter::sharp_bicubic,
+                               Filter::antialias, Filter::pyramid, Filter::summed_area};
 
 TEST(Overscan, PanoramasOfItAreThoseOfTheLargerPicture) {
     const Box shown{32, 16, 224, 144};
@@ -406,7 +406,8 @@ TEST(Overscan, WarpsOfItAreThoseOfTheLargerPicture) {
             MeshWarpOptions options;
             options.scheme = scheme;
             options.tol = 1e-5;
-            for (const Filter filter : {Filter::bilinear, Filter::bicubic, Filter::antialias}) {
+            for (const Filter filter :
+                 {Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias}) {
                 options.filter = filter;
                 expect_one(warped_picture({"all", moved}, size, kTarget, options),
                            warped_picture({"part", mesh}, {shown.width(), shown.height()}, kTarget, options),

@@ -117,7 +117,7 @@ TEST(Parameter, ErrorsNameParameterValueAndWhatIsAllowed) {
     for (const char* bad :
          {"0", "0x0", "-1", "12x", "x12", "1x2x3", "99999999999", "1.5", "64 x 64", "1048577"})
         says("size", bad, "must be N or NxM, integers from 1 to 1048576");
-    says("filter", "sinc", "nearest, bilinear, bicubic, antialias");
+    says("filter", "sinc", "nearest, bilinear, bicubic, sharp_bicubic, antialias");
     says("to", "Rectilinear", "rectilinear");
     says("mip", "yes", "must be 0 or 1");
     says("src", "", "must not be empty");
@@ -480,8 +480,9 @@ TEST(ReprojectRequest, ErrorsOfLenses) {
     };
     EXPECT_THAT(error({{"lens", "ptlens:x=1"}}),
                 HasSubstr("lens=ptlens:x=1: ptlens must be followed by values of"));
-    EXPECT_THAT(error({{"srclens", "ptlens:a=1"}}),
-                HasSubstr("srclens=ptlens:a=1: must be none for equirectangular, which has no lens"));
+    EXPECT_THAT(
+        error({{"srclens", "ptlens:a=1"}}),
+        HasSubstr("srclens=ptlens:a=1: must be none for equirectangular of 360 degrees, which has no lens"));
     EXPECT_THAT(error({{"lens", "3de4:k1=-4"}, {"size", "300x200"}}),
                 HasSubstr("lens=3de4:k1=-4: folds at a radius of 52 pixels: must not within 100"));
     EXPECT_THAT(error({{"srcyaw", "up"}}), HasSubstr("srcyaw=up: must be a finite number"));

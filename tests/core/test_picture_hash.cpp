@@ -300,13 +300,14 @@ const std::vector<std::string>& figure_recipes() {
     return list;
 }
 
-/// What a recipe's filter may be, but for those that ask for tables of their own.
+/// What a recipe's filter may be, but for those that ask for tables of their own, and for the sharp cubic, which has cases of its own.
 std::vector<std::string> filters_of(const std::string& recipe) {
     const Operation& operation = *find_operation(recipe.substr(0, recipe.find('?')));
     std::vector<std::string> filters;
     for (const Parameter& p : *operation.parameters)
         if (p.name == "filter")
-            for (const auto& choice : p.choices) filters.emplace_back(choice);
+            for (const auto& choice : p.choices)
+                if (choice != "sharp_bicubic") filters.emplace_back(choice);
     if (recipe.find("scheme=oka") != std::string::npos || recipe.find("hardware") != std::string::npos)
         return {""};
     return filters;
@@ -338,6 +339,18 @@ std::vector<Case> cases() {
             list.push_back(
                 {view + (filter == std::string("bicubic") ? "&clamp=1" : ""), {type, filter, 3, true}});
     for (const PixelType type : kTypes) list.push_back({view, {type, "antialias", 4, false, true}});
+    for (const char* const recipe :
+         {"pano?to=rectilinear&fov=90&yaw=40&pitch=20&size=96x64",
+          "pano?to=rectilinear&fov=90&yaw=40&size=64x48&tol=0", "pano?to=cubemap&yaw=20&size=32x192",
+          "lens?fov=120&lens=kb4:k1=0.05,k2=0.01", "map?u=width*s^1.3&v=height*t^0.8&wrap=mirror",
+          "warp?mesh=grid.json", "morph?features=lines.json&t=0.4",
+          "mosaic?circles=2&from=cylindrical&x=0.3&z=-0.2&yaw=70&fov=80&size=64x48",
+          "drape?surface=torus&camera=0.4,1.2,2.5&size=64x48&shading=phong&light=1,1,1&specular=0.4"})
+        for (const PixelType type : kTypes)
+            list.push_back({recipe, {type, "sharp_bicubic", type == PixelType::half ? 4 : 3}});
+    for (const PixelType type : {PixelType::half, PixelType::float32})
+        list.push_back({view + "&clamp=1", {type, "sharp_bicubic", 3, true}});
+    list.push_back({view, {PixelType::uint8, "sharp_bicubic", 4, false, true}});
     for (const char* const output : {"stmap", "bound", "coverage"})
         for (const std::size_t i : {0u, 32u, 41u})
             list.push_back({recipes()[i] + "&output=" + output, {PixelType::float32, "antialias"}});

@@ -147,8 +147,8 @@ TEST(Reproject, RowsThatEndWithTheSphereGoOnBeyondTheSeam) {
     for (const Projection projection : {Projection::sinusoidal, Projection::hammer})
         for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
             for (const Chart& view : views)
-                for (const Filter filter :
-                     {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+                for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic,
+                                            Filter::sharp_bicubic, Filter::antialias})
                     for (const Orientation& look :
                          {Orientation{180, 0, 0}, {175, 40, 30}, {-170, -60, 0}, {20, 85, 0}, {0, 0, 0}}) {
                         SCOPED_TRACE(testing::Message()
@@ -257,7 +257,8 @@ TEST(Reproject, ASteadySkyHasNoSeams) {
                            : projection == cubemap       ? Chart(projection, 64, 384)
                            : projection == cubemap3x2    ? Chart(projection, 192, 128)
                                                          : Chart(projection, 256, 192);
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias}) {
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias}) {
             Picture pixels(PixelType::float32, from.width(), from.height(), 1);
             for (const Piece& piece : from.pieces())
                 for (int y = piece.box.y0; y < piece.box.y1; ++y)
@@ -302,7 +303,7 @@ TEST(Reproject, EveryInstructionSetAgreesWithTheScalarSampler) {
     for (const char* const* set = simd::instruction_sets(); *set; ++set) {
         ASSERT_TRUE(simd::use_instruction_set(*set));
         for (Case c : cases())
-            for (const Filter filter : {Filter::bilinear, Filter::bicubic}) {
+            for (const Filter filter : {Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic}) {
                 SCOPED_TRACE(::testing::Message()
                              << *set << " " << c.name << " filter " << static_cast<int>(filter));
                 c.options.tol = 0;
@@ -311,7 +312,7 @@ TEST(Reproject, EveryInstructionSetAgreesWithTheScalarSampler) {
                 const MemorySource source(pixels.read());
                 const Picture picture =
                     draw(reprojected_picture({c.source, c.target, c.look}, c.options), source);
-                EXPECT_LE(against_scalar(c, source, picture), filter == Filter::bicubic ? 32 : 16);
+                EXPECT_LE(against_scalar(c, source, picture), is_cubic(filter) ? 32 : 16);
             }
         // Blocks against exact: noise changes by at most 2 per pixel of distance, along each axis.
         for (Case c : cases()) {
@@ -333,7 +334,8 @@ TEST(Reproject, NotANumberStaysInItsFootprint) {
     using enum Projection;
     const Chart from(equirectangular, 256, 128), to(rectilinear, 200, 200, 60);
     for (const float bad : {float(NAN), float(INFINITY)})
-        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+        for (const Filter filter :
+             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic}) {
             Picture pixels = noise(PixelType::float32, 256, 128, 3, 3);
             pixels.set(128, 64, 1, bad);
             const MemorySource source(pixels.read());
@@ -484,7 +486,8 @@ TEST(Reproject, WhatNeitherOfTwoLensesSeesIsBlack) {
     const MemorySource source(pixels.read());
     const Chart from(Projection::dual_fisheye, 2 * kSize, kSize, 120);
     const Panorama map(from, {Projection::equirectangular, 360, 180}, {});
-    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+    for (const Filter filter :
+         {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias})
         for (const double tol : {0.0, 0.01}) {
             SCOPED_TRACE(testing::Message() << static_cast<int>(filter) << " tol " << tol);
             ReprojectOptions options;
@@ -518,7 +521,8 @@ TEST(Reproject, AnOctahedronIsOnePicture) {
     const MemorySource source(pixels.read());
     for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
         for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror})
-            for (const Filter filter : {Filter::bilinear, Filter::bicubic, Filter::antialias}) {
+            for (const Filter filter :
+                 {Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic, Filter::antialias}) {
                 ReprojectOptions options;
                 options.filter = filter;
                 options.wrap = wrap;

@@ -86,7 +86,7 @@ bool near(float a, float b) {
 
 /// How many texels either way have weight: 0 where the point is in the middle of one.
 int reach_of(Filter filter, double shift) {
-    return shift == 0 || filter == Filter::nearest ? 0 : filter == Filter::bicubic ? 2 : 1;
+    return shift == 0 || filter == Filter::nearest ? 0 : is_cubic(filter) ? 2 : 1;
 }
 
 /// Draws the picture moved by `shift` of a texel to the left, and finds what is not finite where it has to be.
@@ -116,9 +116,9 @@ void check(Block::Kind kind, Filter filter, PixelType type, PixelType to, int ch
                 }
                 const bool fits =
                     !hit ? (beside_special(x, y) ? near(got[i], finite[i]) : same_bits(got[i], finite[i]))
-                    : std::isnan(hit->value)    ? std::isnan(got[i])
-                    : filter == Filter::bicubic ? !std::isfinite(got[i])
-                                                : got[i] == hit->value;
+                    : std::isnan(hit->value) ? std::isnan(got[i])
+                    : is_cubic(filter)       ? !std::isfinite(got[i])
+                                             : got[i] == hit->value;
                 if (!fits && ++wrong < 5)
                     ADD_FAILURE() << x << "," << y << " channel " << c << ": " << got[i] << " in place of "
                                   << (hit ? hit->value : finite[i]);
@@ -137,8 +137,8 @@ void check(Block::Kind kind, Filter filter, PixelType type, PixelType to, int ch
 TEST(Weightless, TexelsWithoutWeightDoNotCount) {
     using Kind = Block::Kind;
     for (const Kind kind : {Kind::polynomial, Kind::computed, Kind::exact})
-        for (const Filter filter :
-             {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias, Filter::pyramid})
+        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic,
+                                    Filter::antialias, Filter::pyramid})
             for (const PixelType type : {PixelType::float32, PixelType::half})
                 for (const int channels : {1, 3, 4, 5})
                     for (const double shift : {0.0, 0.25}) check(kind, filter, type, type, channels, shift);
@@ -148,7 +148,7 @@ TEST(Weightless, OnEveryInstructionSet) {
     using Kind = Block::Kind;
     test::on_every_instruction_set([] {
         for (const Kind kind : {Kind::polynomial, Kind::exact})
-            for (const Filter filter : {Filter::bilinear, Filter::bicubic})
+            for (const Filter filter : {Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic})
                 for (const PixelType type : {PixelType::float32, PixelType::half})
                     for (const int channels : {3, 4})
                         for (const PixelType to : {PixelType::float32, PixelType::half})
@@ -184,7 +184,7 @@ TEST(Weightless, SinglePointsTakeTheMiddleOfATexelThatIsAsNear) {
     const Border border(Chart(Projection::rectilinear, kWidth, kHeight), Wrap::clamp);
     PointSampler sampler(source, border);
     float pixel[3];
-    for (const Filter filter : {Filter::bilinear, Filter::bicubic})
+    for (const Filter filter : {Filter::bilinear, Filter::bicubic, Filter::sharp_bicubic})
         for (const double off : {0.0, 1e-9, -1e-9}) {
             ASSERT_TRUE(sampler.sample(filter, 0, 0, 70.5 + off, 40.5 - off, pixel));
             EXPECT_EQ(pixel[0], kInf);

@@ -405,7 +405,7 @@ TEST_F(Cameras, EyesSeeTheirOwnPart) {
     for (const std::string view :
          {"&to=rectilinear&fov=70&yaw=170&pitch=20&size=60x40", "&to=fisheye&fov=180&pitch=90&size=40",
           "&to=equirectangular&yaw=33&size=50", "&to=rectilinear&fov=30&yaw=20&size=60x40&alpha=1"})
-        for (const std::string filter : {"antialias", "bicubic", "nearest"}) {
+        for (const std::string filter : {"antialias", "bicubic", "sharp_bicubic", "nearest"}) {
             SCOPED_TRACE(view + " " + filter);
             const std::string keys = view + "&from=latlong&filter=" + filter;
             const std::vector<float> left = read_floats("whole.exr.pano?srcyaw=0" + keys),

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <filesystem>
 #include <numbers>
 
 #include "host.h"
@@ -336,6 +337,40 @@ TEST_F(Chains, GoThroughStmaps) {
     // Half has steps of more than the tolerance.
     EXPECT_EQ(chain_of(view + "(large.exr.warp?mesh=rough.exr)"),
               "pano of a picture that is drawn first: its source has an ST-map that is rough or small");
+}
+
+// What has few pixels is joined whatever it is: each is computed by itself.
+TEST_F(Chains, GoThroughSmallWarps) {
+    std::string rough = R"({"columns": 12, "rows": 9, "units": "fractions", "vertices": [)";
+    for (int i = 0; i < 13 * 10; ++i)
+        rough += (i > 0 ? ", [" : "[") + std::to_string((i % 13 + 0.2 * (i * 7 % 5 - 2)) / 12.0) + ", " +
+                 std::to_string((i / 13 + 0.2 * (i * 3 % 5 - 2)) / 9.0) + "]";
+    write_text("rough.json", rough + "]}");
+    for (const char* const size : {"2x2", "3x2", "2x9", "24x16", "35x20", "64x64"}) {
+        SCOPED_TRACE(size);
+        ASSERT_EQ(run("oiiotool 'plate.exr.map?u=x*0.9+0.03*width*sin(y/11)&v=y*0.95+1&size=" +
+                      std::string(size) + "&output=stmap' -d float -o st.exr")
+                      .status,
+                  0);
+        const std::string view = "v.pano?from=rectilinear&srcfov=84&fov=70&yaw=6&size=90x70";
+        for (const std::string keys : {"mesh=st.exr", "mesh=rough.json&size=" + std::string(size)}) {
+            const std::string inner = view + "&src=(plate.exr.warp?" + keys + ")",
+                              outer = "w.warp?" + keys + "&src=(plate.exr.lens?lens=3de4:k1=0.03)";
+            EXPECT_EQ(chain_of(inner), "pano of warp");
+            EXPECT_EQ(chain_of(outer), "warp of lens");
+            for (const std::string& name : {inner, outer}) {
+                const std::size_t at = name.find("&src=");
+                const std::vector<float> error = read_floats(std::string(name).insert(at, "&output=error")),
+                                         bound = read_floats(std::string(name).insert(at, "&output=bound"));
+                ASSERT_EQ(error.size(), bound.size());
+                for (std::size_t i = 0; i < error.size(); ++i) ASSERT_LE(error[i], bound[i]) << name;
+                for (const float value : read_floats(name)) ASSERT_TRUE(std::isfinite(value)) << name;
+            }
+            // The outer one has the source points that both maps have, one after the other.
+            expect_one_picture(outer, 1, 1);
+        }
+        std::filesystem::remove("st.exr");
+    }
 }
 
 // Warps without a formula of their own are read as cubics, which bounds know of: meshes that push, of small cells, pairs of points.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""clamp=1: what bicubic filters overshoot is cut off at the least and the greatest of the 4x4 texels, as NumPy has them."""
+"""clamp=1: what cubic filters overshoot is cut off at the least and the greatest of the 4x4 texels, as NumPy has them."""
 import os
 import unittest
 
@@ -25,22 +25,27 @@ def read(name):
     return pixels.astype(np.float64)
 
 
-def catmull_rom(t):
-    """Weights of the texels at -1, 0, 1 and 2, t to the right of 0: Keys 1981 by its pieces, a = -1/2."""
+# The cubics by their a.
+CUBICS = {"bicubic": -1 / 2, "sharp_bicubic": -2 / 3}
+
+
+def cubic(a, t):
+    """Weights of the texels at -1, 0, 1 and 2, t to the right of 0: Keys 1981 by its pieces."""
     def near(d):
-        return 1.5 * d**3 - 2.5 * d**2 + 1
+        return (a + 2) * d**3 - (a + 3) * d**2 + 1
 
     def far(d):
-        return -0.5 * d**3 + 2.5 * d**2 - 4 * d + 2
+        return a * d**3 - 5 * a * d**2 + 8 * a * d - 4 * a
 
     return np.array([far(1 + t), near(t), near(1 - t), far(2 - t)])
 
 
-def by_definition(pixels, u, v):
+def by_definition(filter_, pixels, u, v):
     """The filtered value and the least and the greatest texel, at a point whose taps are all inside."""
     x, y = int(np.floor(u - 0.5)), int(np.floor(v - 0.5))
     taps = pixels[y - 1:y + 3, x - 1:x + 3]
-    value = np.einsum("j,i,jic->c", catmull_rom(v - 0.5 - y), catmull_rom(u - 0.5 - x), taps)
+    a = CUBICS[filter_]
+    value = np.einsum("j,i,jic->c", cubic(a, v - 0.5 - y), cubic(a, u - 0.5 - x), taps)
     return value, taps.min(axis=(0, 1)), taps.max(axis=(0, 1))
 
 
@@ -58,15 +63,20 @@ class Clamp(unittest.TestCase):
         write("shorts.tif", cls.steps[:, :, :3], "uint16")
 
     def test_is_within_the_taps(self):
+        for filter_ in CUBICS:
+            with self.subTest(filter_):
+                self.is_within_the_taps(filter_)
+
+    def is_within_the_taps(self, filter_):
         overshot = 0
-        for name, least_off in (("noise.exr", 0), ("half.exr", 2e-3)):
+        for name, least_off in (("noise.exr", 0), ("half.exr", 2e-3), ("bytes.png", 2e-3), ("shorts.tif", 1e-5)):
             pixels = read(name)
             for scale in (0.37, 1.0, 1.9):
-                recipe = f"{name}.map?u=x*{scale}+5.21&v=y*{scale}+3.37&size=20x16&filter=bicubic"
+                recipe = f"{name}.map?u=x*{scale}+5.21&v=y*{scale}+3.37&size=20x16&filter={filter_}"
                 clamped, free = read(recipe + "&clamp=1"), read(recipe)
                 for y in range(16):
                     for x in range(20):
-                        value, least, most = by_definition(pixels, (x + 0.5) * scale + 5.21,
+                        value, least, most = by_definition(filter_, pixels, (x + 0.5) * scale + 5.21,
                                                            (y + 0.5) * scale + 3.37)
                         np.testing.assert_allclose(free[y, x], value, atol=1e-5 + least_off)
                         np.testing.assert_allclose(clamped[y, x], np.clip(value, least, most),
@@ -90,10 +100,10 @@ class Clamp(unittest.TestCase):
             "{0}.warp?mesh=grid.json&wrap=clamp", "v.morph?a={0}&b={0}&features=lines.json&t=0.3",
             "{0}.mosaic?circles=1&fov=40&wrap=clamp", "{0}.drape?surface=plane&rotate=20,10,5&background=0.25,0.25,0.25"
         ]
-        for operation in operations:
+        for operation, filter_ in ((o, f) for o in operations for f in CUBICS):
             for name in ("steps.exr", "bytes.png", "shorts.tif"):
                 recipe = operation.format(name)
-                recipe += ("&" if "?" in recipe else "?") + "filter=bicubic"
+                recipe += ("&" if "?" in recipe else "?") + "filter=" + filter_
                 free, clamped = read(recipe), read(recipe + "&clamp=1")
                 with self.subTest(recipe):
                     low, high = read(name).min(), read(name).max()
@@ -115,18 +125,20 @@ class Clamp(unittest.TestCase):
         pixels = self.pixels.copy()
         pixels[20, 30] = (np.inf, np.nan, 1000)
         write("sun.exr", pixels, "float")
-        moved = read("sun.exr.map?u=x&v=y&filter=bicubic&clamp=1")
-        np.testing.assert_array_equal(moved, pixels)
-        between = read("sun.exr.map?u=x+0.25&v=y&filter=bicubic&clamp=1")
-        self.assertFalse(np.isfinite(between[20, 29, 0]))
-        self.assertTrue(np.isnan(between[20, 29, 1]))
-        self.assertTrue(np.isfinite(between[20, :, 2]).all())
-        self.assertLessEqual(between[:, :, 2].max(), 1000)
+        for filter_ in CUBICS:
+            moved = read(f"sun.exr.map?u=x&v=y&filter={filter_}&clamp=1")
+            np.testing.assert_array_equal(moved, pixels)
+            between = read(f"sun.exr.map?u=x+0.25&v=y&filter={filter_}&clamp=1")
+            self.assertFalse(np.isfinite(between[20, 29, 0]))
+            self.assertTrue(np.isnan(between[20, 29, 1]))
+            self.assertTrue(np.isfinite(between[20, :, 2]).all())
+            self.assertLessEqual(between[:, :, 2].max(), 1000)
 
     def test_data_too(self):
-        recipe = "noise.exr.map?u=x*0.37+5.21&v=y*0.4+3&data_channels=R&data_filter=bicubic&clamp=1"
-        all_by_bicubic = read("noise.exr.map?u=x*0.37+5.21&v=y*0.4+3&filter=bicubic&clamp=1")
-        np.testing.assert_array_equal(read(recipe)[:, :, 0], all_by_bicubic[:, :, 0])
+        for filter_ in CUBICS:
+            recipe = f"noise.exr.map?u=x*0.37+5.21&v=y*0.4+3&data_channels=R&data_filter={filter_}&clamp=1"
+            all_by_it = read(f"noise.exr.map?u=x*0.37+5.21&v=y*0.4+3&filter={filter_}&clamp=1")
+            np.testing.assert_array_equal(read(recipe)[:, :, 0], all_by_it[:, :, 0])
 
     def test_refuses_what_is_no_toggle(self):
         for value in ("2", "yes", "", "nan"):

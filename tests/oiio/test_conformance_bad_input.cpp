@@ -150,7 +150,7 @@ TEST_F(BadInput, conformance_21_extreme_values) {
     write_panorama("one.exr", 1, 1, OIIO::TypeFloat, 1, 0);
     write_panorama("two.exr", 2, 1, OIIO::TypeFloat, 1, 0);
     for (const char* from : {"equirectangular", "rectilinear", "fisheye", "mercator"})
-        for (const char* filter : {"nearest", "bilinear", "bicubic", "antialias"})
+        for (const char* filter : {"nearest", "bilinear", "bicubic", "sharp_bicubic", "antialias"})
             for (const char* name : {"one.exr", "two.exr"})
                 open_and_read(std::string(name) + ".pano?size=33x17&pixels=edges&from=" + from +
                               "&filter=" + filter);
@@ -163,7 +163,7 @@ TEST_F(BadInput, conformance_21_nan_and_infinity_in_pixels_stay_local) {
                          0.5f};
     image.setpixel(128, 64, bad);
     write_image(image, "bad.exr");
-    for (const char* filter : {"nearest", "bilinear", "bicubic", "antialias"}) {
+    for (const char* filter : {"nearest", "bilinear", "bicubic", "sharp_bicubic", "antialias"}) {
         SCOPED_TRACE(filter);
         const std::vector<float> view =
             read_floats(std::string("bad.exr.pano?size=256x256&filter=") + filter);

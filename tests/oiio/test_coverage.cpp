@@ -47,7 +47,7 @@ std::string of(std::string recipe, const std::string& source) {
 
 TEST_F(Coverage, IsWhatAWhiteSourceShows) {
     for (const std::string& recipe : kRecipes)
-        for (const std::string filter : {"antialias", "bilinear", "bicubic", "nearest"}) {
+        for (const std::string filter : {"antialias", "bilinear", "bicubic", "sharp_bicubic", "nearest"}) {
             SCOPED_TRACE(recipe + " " + filter);
             const std::string keys = "&filter=" + filter;
             const std::vector<float> truth = read_floats(of(recipe, "white.exr") + keys),
@@ -196,7 +196,8 @@ TEST_F(Coverage, IsWhatTheFileHas) {
              {".lens?lens=3de4:k1=-0.3", ".lens?lens=3de4:k1=0.1&size=all", ".map?u=x*7-300&v=y*9-200",
               ".map?u=x*13-600&v=y*5-150", ".pano?from=rectilinear&srcfov=70&fov=150&yaw=20&size=50x40",
               ".pano?from=fisheye&srcfov=120&fov=160&size=30x20"})
-            for (const std::string filter : {"antialias", "bilinear", "bicubic", "nearest"}) {
+            for (const std::string filter :
+                 {"antialias", "bilinear", "bicubic", "sharp_bicubic", "nearest"}) {
                 SCOPED_TRACE(name + recipe + " " + filter);
                 const std::string drawn = name + recipe + "&filter=" + filter;
                 const std::vector<float> all = read_floats(drawn + "&alpha=1"),

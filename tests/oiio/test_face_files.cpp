@@ -75,7 +75,8 @@ TEST_F(FaceFilesInAFolder, AreWhatOneFileShowsPixelForPixel) {
         for (const std::string ending : {".exr", ".png"}) {
             cut("grid" + ending, 3, words, folder + "/sky_", "_1k" + ending);
             for (const std::string view : kViews)
-                for (const std::string filter : {"nearest", "bilinear", "bicubic", "antialias"}) {
+                for (const std::string filter :
+                     {"nearest", "bilinear", "bicubic", "sharp_bicubic", "antialias"}) {
                     SCOPED_TRACE(view + " " + filter);
                     const std::string keys = "?filter=" + filter + "&" + view;
                     EXPECT_EQ(largest_difference(

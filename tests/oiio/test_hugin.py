@@ -210,15 +210,15 @@ def random_images(rng, name):
                            (10, 60, 250), (21, 60, 250)):
         lens = [rng.uniform(-0.02, 0.02), rng.uniform(-0.04, 0.04), rng.uniform(-0.02, 0.02), rng.uniform(-9, 9),
                 rng.uniform(-9, 9)]
-        # Panoramas have no lens here.
-        lens = [0.0] * 5 if f in (1, 4) else lens
+        # Whole turns have no lens here.
+        most = 355 if f == 4 else most
         yield image(name, f, 400, 300, round(rng.uniform(least, most), 3), rng.uniform(-180, 180),
                     rng.uniform(-90, 90), rng.uniform(-180, 180), lens)
 
 
 def moved_images(rng, name):
     """Images with shear, and of cameras that stand elsewhere; some look past the plane that they see."""
-    for f, least, most in ((0, 30, 110), (3, 90, 200), (10, 60, 150)):
+    for f, least, most in ((0, 30, 110), (3, 90, 200), (10, 60, 150), (1, 60, 200), (4, 60, 200)):
         lens = [rng.uniform(-0.01, 0.01) for _ in "abc"] + [rng.uniform(-9, 9), rng.uniform(-9, 9)]
         yield image(name, f, 400, 300, rng.uniform(least, most), rng.uniform(-30, 30), rng.uniform(-30, 30),
                     rng.uniform(-180, 180), lens, shear=(rng.uniform(-20, 20), rng.uniform(-20, 20)))

@@ -189,8 +189,10 @@ TEST_F(Projects, SayWhatIsWrongWithThem) {
                 HasSubstr("image 0 (left.exr) is 64x48 and its project says 64x47: must be the same"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v180 n\"left.exr\""),
                 HasSubstr("bad.pto: image 0 (left.exr): fov=180"));
-    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f4 v180 a0.1 n\"left.exr\""),
+    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f4 v360 a0.1 n\"left.exr\""),
                 AllOf(HasSubstr("bad.pto: image 0 (left.exr): "), HasSubstr("has no lens")));
+    EXPECT_THAT(error_of(kPanorama + "i w64 h48 f1 v180 b9 n\"left.exr\""),
+                HasSubstr("bad.pto: image 0 (left.exr): lens"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 b9 n\"left.exr\""),
                 HasSubstr("bad.pto: image 0 (left.exr): lens"));
     EXPECT_THAT(error_of(kPanorama + "i w64 h48 f0 v80 S64,70,0,48 n\"left.exr\""),

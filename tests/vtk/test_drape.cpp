@@ -245,7 +245,8 @@ std::vector<double> turned_over(const std::vector<Value>& pixels, std::size_t ro
 }
 
 const anamorph::Size kScreen{90, 60};
-const char* const kFilters[] = {"nearest", "bilinear", "bicubic", "antialias", "pyramid", "summed_area"};
+const char* const kFilters[] = {"nearest", "bilinear",    "bicubic",      "antialias",
+                                "pyramid", "summed_area", "sharp_bicubic"};
 const char* const kStyles[] = {"color", "stmap", "depth", "normal"};
 
 /// What is drawn of a surface.
@@ -489,6 +490,7 @@ TEST(VtkDrape, WhatASchemeCannotMeanIsAnErrorThatNamesTheProperty) {
     EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetBackground(0, 0.5, 0, 1); }),
                 HasSubstr("Background=0,0.5,0,1: must be 0,0,0,0 with Scheme=hardware"));
     for (const auto& [filter, word] : {std::pair{Drape::BICUBIC, "bicubic"},
+                                       {Drape::SHARP_BICUBIC, "sharp_bicubic"},
                                        {Drape::PYRAMID, "pyramid"},
                                        {Drape::SUMMED_AREA, "summed_area"}}) {
         const int chosen = filter;

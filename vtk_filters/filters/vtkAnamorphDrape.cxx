@@ -65,8 +65,9 @@ constexpr anamorph::NumberRow kCoordinateRow{"coordinate", 0, -1e6, 1e6};
 
 const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal"};
 // The operation's words for the values of Filter, Shading and Scheme.
-constexpr std::array kFilters = {"nearest", "bilinear", "bicubic", "antialias", "pyramid", "summed_area"};
-static_assert(kFilters.size() == vtkAnamorphDrape::SUMMED_AREA + 1);
+constexpr std::array kFilters = {"nearest", "bilinear",    "bicubic",      "antialias",
+                                 "pyramid", "summed_area", "sharp_bicubic"};
+static_assert(kFilters.size() == vtkAnamorphDrape::SHARP_BICUBIC + 1);
 constexpr std::array kShadings = {"none", "gouraud", "phong"};
 static_assert(kShadings.size() == vtkAnamorphDrape::PHONG + 1);
 constexpr std::array kSchemes = {"auto", "exact", "oka", "oka-z", "hardware"};

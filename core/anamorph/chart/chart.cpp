@@ -275,8 +275,8 @@ void Chart::check_padding(const std::string& prefix, const LensModel& lens) cons
     const Box& face = m_pieces[0].box;
     const FaceGrid grid = faces_of(m_projection);
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
-    const bool is_round =
-        lensed == Lensed::equidistant || lensed == Lensed::stereographic || lensed == Lensed::axial;
+    const bool is_round = lensed == Lensed::equidistant || lensed == Lensed::stereographic ||
+                          (lensed == Lensed::axial && !rows_turn(m_projection));
     const std::string name(name_of(m_projection)), text = m_padding.text();
     if (grid.joined || (grid.columns == 0 && !is_round))
         throw Error(prefix + "padding", text,
@@ -321,6 +321,22 @@ bool Chart::has_joined_rows() const {
     return grid.columns > 0 && !grid.joined && (m_padding.around_rows || m_width % grid.columns != 0);
 }
 
+namespace {
+
+/// Checks the lens of a picture whose columns are azimuths: what belongs to an axis has no meaning there, and a full turn has no edges
+/// that could be bent.
+void check_lens_of_rows(Projection projection, double fov, const LensModel& lens,
+                        const std::string& parameter) {
+    const std::string name(name_of(projection));
+    if (fov == 360)
+        throw Error(parameter, lens.text(),
+                    "must be none for " + name + " of 360 degrees, which has no lens");
+    if (lens.kind != LensModel::Kind::ptlens && lens.kind != LensModel::Kind::poly)
+        throw Error(parameter, lens.text(), "must be ptlens or poly for " + name);
+}
+
+}  // namespace
+
 void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     // A difference is off by a unit at most, which is within what width_units says.
     const long double margin = 2.0L * m_padding.pixels;
@@ -363,6 +379,8 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     if (lens.kind == LensModel::Kind::none) return;
     const Lens::Plane half{plane / 2, plane_down / 2, 1 / across, 1 / down};
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
+    if (rows_turn(m_projection) && lensed != Lensed::no)
+        check_lens_of_rows(m_projection, m_fov, lens, prefix + "lens");
     m_lens =
         std::make_shared<const Lens>(lens, lensed, std::string(name_of(m_projection)), half, prefix + "lens");
 }
@@ -371,7 +389,7 @@ void Chart::set_branches() {
     with_projection(m_projection, [&](auto formulas) {
         m_counted = formulas.counted;
         m_closed = formulas.closes && m_fov == 360;
-        m_turns = formulas.closes;
+        m_turns = formulas.closes && !m_lens;
         m_pieces_see_all = m_pieces.size() > 1 && formulas.faces_see_all(m_setting);
         const double middle = m_vertical.horizon.value_or(0.5 * m_height);
         const bool is_whole = m_vertical.fov == 0 ? m_width == 2 * m_height : m_vertical.fov == 180;
@@ -413,6 +431,7 @@ Chart Chart::resized(int width, int height) const {
     Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance, {}, vertical,
                 {m_padding.pixels * width / m_width, m_padding.around_rows});
     chart.m_lens = m_lens;
+    chart.m_turns = m_turns;
     return chart;
 }
 
@@ -436,6 +455,8 @@ Branch Chart::branch_around(double x, double y, int piece) const {
 Branch Chart::branch_around(const Ray<double>& ray) const {
     Branch b = branch(piece_of(ray));
     const Ray<double> r = transform(glm::transpose(b.axes), ray);
+    // A lens has its centre where azimuths are 0.
+    if (m_counted == Counted::azimuth && m_lens) return b;
     if (m_counted == Counted::azimuth) {
         b.around = {r.x, r.z};
         b.along = {r.y, std::hypot(r.x, r.z)};

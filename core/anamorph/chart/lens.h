@@ -6,7 +6,7 @@
 // Models, with u a point about the lens's centre, r = |u|, and v what becomes of it:
 //
 //   ptlens   ideal to observed, v = u (a r^3 + b r^2 + c r + 1 - a - b - c); PanoTools and Hugin. Unit: half of the
-//            picture's smaller side. For projections with an axis. What is observed is (x + g y / height, y + t x / width) of
+//            picture's smaller side. With an axis, or cylinders. What is observed is (x + g y / height, y + t x / width) of
 //            the picture's v about its middle, PanoTools' shear.
 //   brown    ideal to observed, v = u (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
 //            + (2 p1 x y + p2 (r^2 + 2 x^2), p1 (r^2 + 2 y^2) + 2 p2 x y) + (s1 r^2 + s2 r^4, s3 r^2 + s4 r^4);

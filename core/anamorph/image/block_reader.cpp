@@ -1079,6 +1079,8 @@ BlockReader::Filtering BlockReader::filtering(const Jacobian& steps) const {
     if (m_filter == Filter::nearest) f.kernel = simd::Kernel::nearest;
     if (m_filter == Filter::bicubic) f.kernel = simd::Kernel::bicubic;
     if (m_filter == Filter::bicubic_clamped) f.kernel = simd::Kernel::bicubic_clamped;
+    if (m_filter == Filter::sharp_bicubic) f.kernel = simd::Kernel::sharp_bicubic;
+    if (m_filter == Filter::sharp_bicubic_clamped) f.kernel = simd::Kernel::sharp_bicubic_clamped;
     if (!averages(m_filter)) return f;
     const Footprint footprint = m_chooser(jacobian);
     f.level = footprint.level;

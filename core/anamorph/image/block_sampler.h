@@ -35,11 +35,25 @@ struct Polynomials {
 /// There is room for kRowRoom floats in each array.
 void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y);
 
-enum class Kernel : std::uint8_t { nearest, bilinear, bicubic, bicubic_clamped };
+enum class Kernel : std::uint8_t {
+    nearest,
+    bilinear,
+    bicubic,
+    bicubic_clamped,
+    sharp_bicubic,
+    sharp_bicubic_clamped
+};
 
 /// Does a kernel read 4 x 4 texels?
 constexpr bool is_cubic(Kernel kernel) {
-    return kernel == Kernel::bicubic || kernel == Kernel::bicubic_clamped;
+    return kernel >= Kernel::bicubic;
+}
+constexpr bool is_sharp(Kernel kernel) {
+    return kernel >= Kernel::sharp_bicubic;
+}
+/// Is what a kernel overshoots cut off?
+constexpr bool is_clamped(Kernel kernel) {
+    return kernel == Kernel::bicubic_clamped || kernel == Kernel::sharp_bicubic_clamped;
 }
 
 /// One of the taps that make up a filtered pixel, all of equal weight: its offset in texels.

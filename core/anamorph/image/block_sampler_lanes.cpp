@@ -12,6 +12,7 @@
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
+#include "anamorph/image/filter.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/weightless.h"
 // Compiled for each instruction set.
@@ -330,13 +331,13 @@ HWY_INLINE void SampleOwn(const Texels& s, const Offsets& at, float* HWY_RESTRIC
     }
 }
 
-/// Catmull-Rom weights of the four texels about a fraction f.
-HWY_INLINE void CubicWeights(float f, float* w) {
+/// Weights of the four texels about a fraction f by a cubic of slope a (filter.h).
+HWY_INLINE void CubicWeights(float f, float a, float* w) {
     const float g = 1 - f;
-    w[0] = -0.5f * f * g * g;
-    w[1] = 1 + f * f * (1.5f * f - 2.5f);
-    w[2] = 1 + g * g * (1.5f * g - 2.5f);
-    w[3] = -0.5f * g * f * f;
+    w[0] = a * f * g * g;
+    w[1] = 1 + f * f * ((a + 2) * f - (a + 3));
+    w[2] = 1 + g * g * ((a + 2) * g - (a + 3));
+    w[3] = a * g * f * f;
 }
 
 template <class T, bool kClamps>
@@ -345,12 +346,13 @@ HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RES
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     Positions<kRowRoom> p;
+    const float slope = cubic_slope(is_sharp(s.kernel));
     // The first of four texels is one before the one a bilinear tap starts with.
     Locate(at, 0, at.count, s.taps[0], 0.5f, s.channels, static_cast<int32_t>(row), p);
     for (int i = 0; i < at.count; ++i) {
         float wx[4], wy[4];
-        CubicWeights(p.fx[i], wx);
-        CubicWeights(p.fy[i], wy);
+        CubicWeights(p.fx[i], slope, wx);
+        CubicWeights(p.fy[i], slope, wy);
         for (int c = 0; c < s.channels; c += kQuad) {
             const T* texel = origin + p.offset[i] + c - row - s.channels;
             auto sum = hn::Zero(d);
@@ -389,7 +391,7 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
 /// Weights of the texels about a fraction, of the kernel's, moved to the middle of one that is so near.
 HWY_INLINE void KernelWeights(Kernel kernel, float f, float* w) {
     f = f < kSameTexel ? 0 : f > 1 - kSameTexel ? 1 : f;
-    if (is_cubic(kernel)) return CubicWeights(f, w);
+    if (is_cubic(kernel)) return CubicWeights(f, cubic_slope(is_sharp(kernel)), w);
     w[0] = 1 - f;
     w[1] = f;
 }
@@ -448,7 +450,7 @@ void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
                         if (weight != 0) value += weight * level;
                         range.add(level, weight);
                     }
-                if (s.kernel == Kernel::bicubic_clamped) value = range.clamped(value);
+                if (is_clamped(s.kernel)) value = range.clamped(value);
             }
         }
     }
@@ -491,8 +493,8 @@ HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
 template <class T>
 void SampleTyped(const Texels& s, const Offsets& at, float* out) {
     if (s.kernel == Kernel::nearest) return SampleNearest<T>(s, at, out);
-    if (s.kernel == Kernel::bicubic) return SampleBicubic<T, false>(s, at, out);
-    if (s.kernel == Kernel::bicubic_clamped) return SampleBicubic<T, true>(s, at, out);
+    if (is_clamped(s.kernel)) return SampleBicubic<T, true>(s, at, out);
+    if (is_cubic(s.kernel)) return SampleBicubic<T, false>(s, at, out);
     const auto with = [&](auto channels) {
         constexpr int k = decltype(channels)::value;
         if (at.own.x_i)

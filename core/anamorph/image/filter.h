@@ -6,18 +6,51 @@ namespace anamorph {
 
 /// The filters by which a source is read.
 ///
-/// nearest, bilinear and bicubic (Catmull-Rom) read the source as it is; bicubic_clamped is bicubic without what overshoots:
-/// each channel is at least the least and at most the greatest of the 4 x 4 texels that are read. antialias is bilinear where the map
+/// nearest, bilinear, bicubic (Catmull-Rom) and sharp_bicubic (the cubic that keeps more of what is fine) read the source as it is; the
+/// clamped ones are without what overshoots: each channel is at least the least and at most the greatest of the 4 x 4 texels that
+/// are read. antialias is bilinear where the map
 /// magnifies and averages over the pixel's footprint, on the pyramid level that fits it, where it minifies.
 /// The last two average over the least rectangle of the source, its sides along the source's own, that covers that
 /// parallelogram (Oka 1987, fig. 2.6), too much of a blur where it lies aslant: pyramid on a level of the pyramid
 /// (Williams 1983), summed_area over all texels, by Source::summed_areas (Crow 1984), which a
 /// Pyramid has.
-enum class Filter { nearest, bilinear, bicubic, bicubic_clamped, antialias, pyramid, summed_area };
+enum class Filter {
+    nearest,
+    bilinear,
+    bicubic,
+    bicubic_clamped,
+    sharp_bicubic,
+    sharp_bicubic_clamped,
+    antialias,
+    pyramid,
+    summed_area
+};
 
 /// Does a filter average where the map minifies?
 constexpr bool averages(Filter filter) {
     return filter >= Filter::antialias;
+}
+
+/// Does a filter read 4 x 4 texels by cubics?
+constexpr bool is_cubic(Filter filter) {
+    return filter >= Filter::bicubic && filter <= Filter::sharp_bicubic_clamped;
+}
+constexpr bool is_sharp(Filter filter) {
+    return filter == Filter::sharp_bicubic || filter == Filter::sharp_bicubic_clamped;
+}
+/// Is what a filter overshoots cut off?
+constexpr bool is_clamped(Filter filter) {
+    return filter == Filter::bicubic_clamped || filter == Filter::sharp_bicubic_clamped;
+}
+
+/// The slope of an interpolating cubic at a distance of one texel: a of Keys 1981, eq. 4, of Mitchell and Netravali's cubics (1988) that
+/// with B = 0 and C = -a. At a fifth of the sampling rate the response to -1/2 is 0.973 and that to -2/3 0.9976, at most 1.0076 up to
+/// there.
+///
+/// The second is off by 8e-8 so that a + 2 and a + 3 are floats, too, and weights are 0 and 1 in the middle of a texel.
+inline constexpr float kBicubicSlope = -0.5f, kSharpBicubicSlope = -0xaaaaacp-24f;
+constexpr float cubic_slope(bool sharp) {
+    return sharp ? kSharpBicubicSlope : kBicubicSlope;
 }
 
 }  // namespace anamorph

@@ -25,8 +25,7 @@ Taps taps_at(Filter filter, double at, float same) {
     const double floor = std::floor(at - 0.5), past = at - 0.5 - floor;
     const double t = past < same ? 0 : past > 1 - same ? 1 : past;
     const int below = static_cast<int>(floor);
-    if (filter == Filter::bicubic || filter == Filter::bicubic_clamped)
-        return {below - 1, 4, catmull_rom_weights(t)};
+    if (is_cubic(filter)) return {below - 1, 4, cubic_weights(t, double{cubic_slope(is_sharp(filter))})};
     const auto [first, second] = bilinear_weights(t);
     return {below, 2, {first, second}};
 }
@@ -118,7 +117,7 @@ void PointSampler::sample(Filter filter, const Window& window, double x, double 
         load_channels(window.texels, window.type, channels, pixel);
         return;
     }
-    const bool clamps = filter == Filter::bicubic_clamped;
+    const bool clamps = is_clamped(filter);
     weigh(window, across, down, clamps, m_texels, m_values);
     const auto is_finite = [](double value) { return std::isfinite(value); };
     if (!std::all_of(m_values.begin(), m_values.end(), is_finite)) {

@@ -19,13 +19,13 @@ std::array<T, 2> bilinear_weights(T t) {
     return {1 - t, t};
 }
 
-/// Catmull-Rom weights of the four texels around a point, `t` in [0, 1) from the second one's centre to the
-/// third one's. Keys 1981, eq. 4 with a = -1/2.
+/// Weights of the four texels around a point, `t` in [0, 1) from the second one's centre to the third one's. Keys 1981, eq. 4,
+/// with `a` of cubic_slope.
 template <class T>
-std::array<T, 4> catmull_rom_weights(T t) {
-    const T half = T(0.5), u = 1 - t;
-    return {-half * t * u * u, 1 + t * t * (T(1.5) * t - T(2.5)), 1 + u * u * (T(1.5) * u - T(2.5)),
-            -half * t * t * u};
+std::array<T, 4> cubic_weights(T t, T a) {
+    const T u = 1 - t;
+    return {a * t * u * u, 1 + t * t * ((a + 2) * t - (a + 3)), 1 + u * u * ((a + 2) * u - (a + 3)),
+            a * t * t * u};
 }
 
 /// Samples a source at single points. Keeps a small window; one per thread. Keeps references to its

@@ -218,8 +218,12 @@ PlanOptions link_options(WarpScheme scheme, double tol) {
 
 std::shared_ptr<const MapLink> window_link(std::shared_ptr<const WindowSource> source, WarpScheme scheme,
                                            double tol) {
+    // Of a picture that has so few pixels each is computed by itself, where windows do not serve: of it as a whole that takes no time.
+    constexpr int kFewPixels = 64 * 64;
+    const Size size = source->target_size();
+    const bool is_small = std::int64_t{size.width} * size.height <= kFewPixels;
     const WindowMap map(std::move(source), tol);
-    if (scheme != WarpScheme::exact && !map.is_smooth()) return nullptr;
+    if (scheme != WarpScheme::exact && !is_small && !map.is_smooth()) return nullptr;
     return std::make_shared<const LinkOf<WindowMap>>(map, link_options(scheme, tol));
 }
 

@@ -241,11 +241,14 @@ Parameter filter(const std::vector<Word>& own) {
     std::vector<Word> words = {{"nearest", Filter::nearest},
                                {"bilinear", Filter::bilinear},
                                {"bicubic", Filter::bicubic},
+                               {"sharp_bicubic", Filter::sharp_bicubic},
                                {"antialias", Filter::antialias}};
     words.insert(words.end(), own.begin(), own.end());
-    return enumeration(
-        "filter", "antialias", words,
-        "antialias is bilinear where the map magnifies" + (own.empty() ? "" : "; " + meanings_of(own)));
+    return enumeration("filter", "antialias", words,
+                       "antialias is bilinear where the map magnifies; sharp_bicubic keeps what repeats "
+                       "every 5 texels to 1%, "
+                       "where bicubic loses 3 and bilinear 12" +
+                           (own.empty() ? "" : "; " + meanings_of(own)));
 }
 
 Parameter data_channels() {
@@ -290,14 +293,16 @@ std::vector<int> named_channels(const std::string& all, const SourceFacts& facts
 }  // namespace
 
 Parameter clamp() {
-    return toggle("clamp", "0",
-                  "1: what filter=bicubic overshoots is cut off: a channel stays between the least and the "
-                  "greatest of the 4x4 texels that are read; the other filters do not overshoot");
+    return toggle(
+        "clamp", "0",
+        "1: what filter=bicubic or sharp_bicubic overshoots is cut off: a channel stays between the least "
+        "and the greatest of the 4x4 texels that are read; the other filters do not overshoot");
 }
 
 Filter filter_of(const ParameterValues& values, std::string_view name) {
     const auto filter = chosen<Filter>(values, name);
-    return filter == Filter::bicubic && values.toggle("clamp") ? Filter::bicubic_clamped : filter;
+    if (!is_cubic(filter) || !values.toggle("clamp")) return filter;
+    return is_sharp(filter) ? Filter::sharp_bicubic_clamped : Filter::bicubic_clamped;
 }
 
 DataChannels data_of(const ParameterValues& values, const SourceFacts& facts, Filter& filter) {

@@ -39,6 +39,14 @@ double least_forward_of(const Chart& chart) {
     return least;
 }
 
+/// A scene is cut where azimuths have a seam, which only those without a lens can be turned away from.
+const Chart& checked(const Chart& panorama) {
+    if (panorama.lens() && panorama.counted() == Counted::azimuth)
+        throw Error("panorama lens", panorama.lens()->model().text(),
+                    "must be none for " + std::string(name_of(panorama.projection())) + " in a scene");
+    return panorama;
+}
+
 }  // namespace
 
 glm::dvec3 scaled_ray(const glm::dvec3& ray) {
@@ -61,7 +69,7 @@ glm::dmat3 frame_of(const ProjectorPose& pose) {
 }
 
 Projector::Projector(const Chart& panorama, const ProjectorPose& pose)
-    : m_panorama(panorama),
+    : m_panorama(checked(panorama)),
       m_pose(pose),
       m_frame(frame_of(pose)),
       m_least_forward(least_forward_of(panorama)) {}

@@ -2,6 +2,9 @@
 // Cylindrical: X = azimuth, Y = tan(elevation) (Kim 2003, eq. 4.1 and 4.2).
 
 struct Cylindrical : CylinderFamily {
+    /// Of less than a full turn: a lens about the middle of the plane, as PanoTools has it.
+    static constexpr Lensed lensed = Lensed::axial;
+
     /// The default height covers 90 degrees of elevation: 2 tan 45 over the azimuth.
     static double aspect(double fov) { return 2 / (fov * std::numbers::pi / 180); }
 

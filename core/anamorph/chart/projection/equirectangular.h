@@ -4,6 +4,8 @@
 struct Equirectangular : CylinderFamily {
     static constexpr std::string_view alias = "latlong";
     static constexpr bool has_pole_rows = true;
+    /// Of less than a full turn: a lens about the middle of the plane, as PanoTools has it.
+    static constexpr Lensed lensed = Lensed::axial;
 
     static double aspect(double fov) { return std::min(fov, 180.0) / fov; }
 
