@@ -8,7 +8,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_chains {
 namespace {
 
 using namespace testing_oiio;
@@ -447,4 +447,4 @@ TEST_F(Chains, AreOnePicture) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_chains

@@ -7,7 +7,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_face_files {
 namespace {
 
 using namespace testing_oiio;
@@ -282,4 +282,4 @@ TEST_F(FaceFilesInAFolder, SayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_face_files
