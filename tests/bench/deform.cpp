@@ -36,7 +36,7 @@
 #include "bench.h"
 #include "pixels.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_deform {
 namespace {
 
 constexpr int kMostSide = 1000;
@@ -443,4 +443,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"deform", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_deform

@@ -30,7 +30,7 @@
 #include "bench.h"
 #include "pixels.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_drape {
 using namespace surface;
 namespace {
 
@@ -537,4 +537,4 @@ void report_bounds(const Settings& settings) {
 const RegisterOp registered({"drape", run, report_bounds});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_drape

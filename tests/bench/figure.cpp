@@ -25,7 +25,7 @@
 #include "figure_depth_tests.h"
 #include "pixels.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_figure {
 using namespace figure;
 namespace {
 
@@ -207,4 +207,4 @@ void report_scenes(const Settings& settings) {
 const RegisterOp registered({"figure", run, report_scenes});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_figure

@@ -26,7 +26,7 @@
 #include "bench.h"
 #include "figure_depth_tests.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_figure_films {
 using namespace figure;
 namespace {
 
@@ -208,4 +208,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"figure", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_figure_films

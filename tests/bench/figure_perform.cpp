@@ -14,7 +14,7 @@
 #include "anamorph/figure/language/script.h"
 #include "bench.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_figure_perform {
 using namespace figure;
 namespace {
 
@@ -110,4 +110,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"figure", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_figure_perform

@@ -21,7 +21,7 @@
 #include "anamorph/figure/image/figure_picture.h"
 #include "bench.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_figure_picture {
 using namespace figure;
 namespace {
 
@@ -244,4 +244,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"figure", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_figure_picture

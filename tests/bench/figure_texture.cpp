@@ -21,7 +21,7 @@
 #include "anamorph/image/pyramid.h"
 #include "bench.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_figure_texture {
 using namespace figure;
 namespace {
 
@@ -205,4 +205,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"figure", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_figure_texture

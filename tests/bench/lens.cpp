@@ -15,7 +15,7 @@
 #include "bench.h"
 #include "drawn_map.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_lens {
 namespace {
 
 constexpr double kTols[] = {0.01, 0.001};
@@ -118,4 +118,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"lens", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_lens

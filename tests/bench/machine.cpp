@@ -22,7 +22,7 @@
 #include "bench.h"
 #include "block_machine.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_machine {
 using namespace machine;
 namespace {
 
@@ -327,4 +327,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"machine", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_machine

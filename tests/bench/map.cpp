@@ -17,7 +17,7 @@
 #include "drawn_map.h"
 #include "map_formulas.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_map {
 namespace {
 
 constexpr double kTols[] = {0.01, 0.001};
@@ -109,4 +109,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"map", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_map

@@ -41,7 +41,7 @@
 #include "feature_mesh.h"
 #include "pixels.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_morph {
 namespace {
 
 constexpr unsigned kSeed = 5;
@@ -563,4 +563,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"morph", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_morph

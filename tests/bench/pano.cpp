@@ -26,7 +26,7 @@
 #include "pano_rivals.h"
 #include "pixels.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_pano {
 namespace {
 
 constexpr double kDefaultTol = 0.01;
@@ -868,4 +868,4 @@ void report_bounds(const Settings& settings) {
 const RegisterOp registered({"pano", run, report_bounds});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_pano

@@ -23,7 +23,7 @@
 #include "anamorph/projector/projection_groups.h"
 #include "projection_rows.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_projection {
 namespace {
 
 const ProjectorPose kPose{{0.2, 0.1, -0.3}, {0.3, -0.1, -1}, {0.1, 1, 0.2}};
@@ -240,4 +240,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"projection", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_projection

@@ -26,7 +26,7 @@
 #include "pixels.h"
 #include "warp_rivals.h"
 
-namespace anamorph::bench {
+namespace anamorph::bench::op_warp {
 namespace {
 
 constexpr double kTols[] = {1, 1.0 / 16, 0.01, 0.001};
@@ -410,4 +410,4 @@ void run(const Settings& settings, Report& report) {
 const RegisterOp registered({"warp", run, nullptr});
 
 }  // namespace
-}  // namespace anamorph::bench
+}  // namespace anamorph::bench::op_warp

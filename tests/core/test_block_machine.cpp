@@ -16,7 +16,7 @@
 #include "anamorph/operation/operation.h"
 #include "drape_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_block_machine {
 using namespace machine;
 using namespace surface;
 namespace {
@@ -680,4 +680,4 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_block_machine

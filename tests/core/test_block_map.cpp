@@ -9,7 +9,7 @@
 #include "anamorph/chart/chart.h"
 #include "draw_map.h"
 
-namespace anamorph {
+namespace anamorph::test_block_map {
 namespace {
 
 /// Blocks of 64 x 32 pixels at their own places, with the region's number for a bound.
@@ -95,4 +95,4 @@ TEST(ConcurrentBlocks, AreDrawnWhole) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_block_map

@@ -17,7 +17,7 @@
 #include "guarded_memory.h"
 #include "remote_source.h"
 
-namespace anamorph {
+namespace anamorph::test_block_reader {
 namespace {
 
 using test::FunctionMap;
@@ -610,4 +610,4 @@ TEST(BlockReader, StaysWithinTheBoundOnEveryLevel) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_block_reader

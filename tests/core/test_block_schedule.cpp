@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-namespace anamorph {
+namespace anamorph::test_block_schedule {
 using namespace machine;
 namespace {
 
@@ -265,4 +265,4 @@ TEST(BlockSchedule, IsATableAndATimeline) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_block_schedule

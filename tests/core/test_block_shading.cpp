@@ -10,7 +10,7 @@
 #include "anamorph/machine/block_pixels.h"
 #include "drape_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_block_shading {
 using namespace machine;
 using namespace surface;
 namespace {
@@ -271,4 +271,4 @@ TEST(BlockShading, TakesWhatIsCountedByHand) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_block_shading

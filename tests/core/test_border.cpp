@@ -26,9 +26,8 @@ static void PrintTo(const Box& b, std::ostream* out) {
 
 }  // namespace anamorph
 
+namespace anamorph::test_border {
 namespace {
-
-using namespace anamorph;
 
 constexpr Texel kNone{0, 0, true};
 constexpr std::int64_t kExtremes[] = {std::numeric_limits<std::int64_t>::min(),
@@ -311,3 +310,4 @@ TEST(Border, CubeEdgesMeetWithoutASeam) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_border

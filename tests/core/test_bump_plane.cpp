@@ -12,7 +12,7 @@
 #include "anamorph/error.h"
 #include "anamorph/machine/bump_unit.h"
 
-namespace anamorph {
+namespace anamorph::test_bump_plane {
 using namespace machine;
 namespace {
 
@@ -405,4 +405,4 @@ TEST(BumpPlane, WhatTheSchemeCannotMeanIsRefused) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_bump_plane

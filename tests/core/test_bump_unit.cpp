@@ -12,7 +12,7 @@
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/pano.h"
 
-namespace anamorph {
+namespace anamorph::test_bump_unit {
 using namespace machine;
 namespace {
 
@@ -341,4 +341,4 @@ TEST(MachineText, CardsRefuseWhatTheyCannotDo) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_bump_unit

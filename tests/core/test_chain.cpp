@@ -23,7 +23,7 @@
 #include "panorama_oracle.h"
 #include "warp_oracles.h"
 
-namespace anamorph {
+namespace anamorph::test_chain {
 namespace {
 
 using oracle::View;
@@ -811,4 +811,4 @@ TEST(Chain, SaysWhyItDoesNotJoin) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_chain

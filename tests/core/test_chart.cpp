@@ -15,9 +15,9 @@
 #include "anamorph/panorama/panorama.h"
 #include "projection_cases.h"
 
+namespace anamorph::test_chart {
 namespace {
 
-using namespace anamorph;
 using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
@@ -622,3 +622,4 @@ TEST(Panorama, RefusesAnglesThatAreNoNumbers) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_chart

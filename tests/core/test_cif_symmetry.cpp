@@ -14,7 +14,7 @@
 #include "anamorph/error.h"
 #include "anamorph/figure/files/motion_file.h"
 
-namespace anamorph {
+namespace anamorph::test_cif_symmetry {
 using namespace figure;
 namespace {
 
@@ -394,4 +394,4 @@ TEST(CrystalSymmetry, AtomsWhoseTensorIsNotPositiveDefiniteAreNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_cif_symmetry

@@ -12,7 +12,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/panorama/concentric_view.h"
 
-namespace anamorph {
+namespace anamorph::test_concentric {
 namespace {
 
 using Real = long double;
@@ -381,4 +381,4 @@ TEST(MosaicRequest, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_concentric

@@ -16,7 +16,7 @@
 #include "anamorph/deform/deformed_surface.h"
 #include "anamorph/image/block_sampler.h"
 
-namespace anamorph {
+namespace anamorph::test_deform {
 namespace {
 
 using ::testing::AllOf;
@@ -745,4 +745,4 @@ TEST(DeformedSurface, RangeOfFixedPoint) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_deform

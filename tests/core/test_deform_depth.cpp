@@ -18,7 +18,7 @@
 #include "anamorph/error.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_deform_depth {
 namespace {
 
 using ::testing::HasSubstr;
@@ -423,4 +423,4 @@ TEST(DeformDepth, ExtremeNumbers) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_deform_depth

@@ -11,7 +11,7 @@
 #include "anamorph/error.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::test_deform_file {
 namespace {
 
 using ::testing::AllOf;
@@ -164,4 +164,4 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_deform_file

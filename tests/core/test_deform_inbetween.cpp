@@ -12,7 +12,7 @@
 #include "anamorph/deform/inbetween.h"
 #include "anamorph/deform/key_frames.h"
 
-namespace anamorph {
+namespace anamorph::test_deform_inbetween {
 namespace {
 
 using ::testing::AllOf;
@@ -298,4 +298,4 @@ TEST(KeyFrames, WhatIsRefused) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_deform_inbetween

@@ -17,7 +17,7 @@
 #include "anamorph/image/block_sampler.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_deform_slopes {
 namespace {
 
 /// Derivatives by u and by v; `count`: how often the point was given.
@@ -305,4 +305,4 @@ TEST(TurnedNormals, AreThoseOfMovedTangents) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_deform_slopes

@@ -10,6 +10,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/projector/tour_file.h"
 
+namespace anamorph::test_docs {
 namespace {
 
 std::string between(const std::string& text, const std::string& begin, const std::string& end) {
@@ -64,3 +65,4 @@ TEST(Docs, ItsFilesCanBeRead) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_docs

@@ -21,7 +21,7 @@
 #include "drape_scene.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_drape {
 using namespace surface;
 namespace {
 
@@ -1235,4 +1235,4 @@ TEST(Drape, NothingIsProvenOfParallelogramsOverWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape

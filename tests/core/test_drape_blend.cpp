@@ -11,7 +11,7 @@
 #include "anamorph/operation/drape_surface.h"
 #include "drape_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_drape_blend {
 using namespace surface;
 namespace {
 
@@ -148,4 +148,4 @@ TEST(DrapeBlend, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape_blend

@@ -13,7 +13,7 @@
 #include "drape_oracle.h"
 #include "drape_scene.h"
 
-namespace anamorph {
+namespace anamorph::test_drape_exact {
 using namespace surface;
 namespace {
 
@@ -229,4 +229,4 @@ TEST(DrapeExact, StartsThatAreOffMuchMoreOneWayAreCertifiedToo) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape_exact

@@ -12,7 +12,7 @@
 #include "anamorph/error.h"
 #include "drape_scene.h"
 
-namespace anamorph {
+namespace anamorph::test_drape_hard {
 using namespace surface;
 namespace {
 
@@ -124,4 +124,4 @@ TEST(DrapeHard, AHeightThatIsNoNumberIsAHoleAndNoMore) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape_hard

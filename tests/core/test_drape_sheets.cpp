@@ -9,7 +9,7 @@
 #include "drape_oracle.h"
 #include "drape_scene.h"
 
-namespace anamorph {
+namespace anamorph::test_drape_sheets {
 using namespace surface;
 namespace {
 
@@ -170,4 +170,4 @@ TEST(DrapeSheets, ASurfaceThatGoesThroughItselfIsSeenInItsOrder) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape_sheets

@@ -14,7 +14,7 @@
 #include "drape_oracle.h"
 #include "drape_scene.h"
 
-namespace anamorph {
+namespace anamorph::test_drape_surfaces {
 using namespace surface;
 namespace {
 
@@ -808,4 +808,4 @@ TEST(DeformationReach, FewOfManyAreNear) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape_surfaces

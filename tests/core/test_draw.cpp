@@ -8,7 +8,7 @@
 
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_draw {
 namespace {
 
 std::vector<float> stmap_of(const Panorama& map, double tol) {
@@ -112,4 +112,4 @@ TEST(Draw, NothingIsWrittenBeyondTheView) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_draw

@@ -11,7 +11,7 @@
 
 #include "anamorph/error.h"
 
-namespace anamorph {
+namespace anamorph::test_ellipse_file {
 using namespace figure;
 namespace {
 
@@ -211,4 +211,4 @@ TEST(EllipseFile, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_ellipse_file

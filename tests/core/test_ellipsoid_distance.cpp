@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-namespace anamorph {
+namespace anamorph::test_ellipsoid_distance {
 using namespace figure;
 namespace {
 
@@ -155,4 +155,4 @@ TEST(EllipsoidContact, NumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_ellipsoid_distance

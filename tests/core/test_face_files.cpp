@@ -11,7 +11,7 @@
 #include "anamorph/error.h"
 #include "anamorph/operation/pano.h"
 
-namespace anamorph {
+namespace anamorph::test_face_files {
 namespace {
 
 using testing::ElementsAre;
@@ -109,4 +109,4 @@ TEST(FaceFiles, OfRandomNames) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_face_files

@@ -11,7 +11,7 @@
 #include "anamorph/morph/features_file.h"
 #include "mesh_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_feature_editor {
 namespace {
 
 using Place = FeatureEditor::Place;
@@ -208,4 +208,4 @@ TEST(FeatureEditor, KeepsTheLastStepsThatItPromises) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_feature_editor

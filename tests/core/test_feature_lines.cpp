@@ -8,7 +8,7 @@
 
 #include "anamorph/error.h"
 
-namespace anamorph {
+namespace anamorph::test_feature_lines {
 namespace {
 
 constexpr Size kSize{200, 160};
@@ -234,4 +234,4 @@ TEST(Features, CurvesBecomeChainsThatFollowThem) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_feature_lines

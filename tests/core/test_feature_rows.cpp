@@ -12,7 +12,7 @@
 #include "each_instruction_set.h"
 #include "feature_families.h"
 
-namespace anamorph {
+namespace anamorph::test_feature_rows {
 namespace {
 
 constexpr int kSize = 96, kCount = 21, kRoom = kCount + 16;
@@ -148,4 +148,4 @@ TEST(FeatureRows, OnALine) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_feature_rows

@@ -9,7 +9,7 @@
 #include "anamorph/error.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::test_features_file {
 namespace {
 
 using testing::HasSubstr;
@@ -302,4 +302,4 @@ TEST(FeaturesFile, EndlessFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_features_file

@@ -11,7 +11,7 @@
 #include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_background {
 using namespace figure;
 namespace {
 
@@ -198,4 +198,4 @@ TEST(FigureTextureAverage, OfAPlainTextureAllAreThatColor) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_background

@@ -10,7 +10,7 @@
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_chain {
 using namespace figure;
 namespace {
 
@@ -86,4 +86,4 @@ TEST(FigureChain, FiguresAreThoseOfTheGraph) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_chain

@@ -8,7 +8,7 @@
 #include "anamorph/figure/body/rotation.h"
 #include "anamorph/figure/outline/fit.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_fit {
 using namespace figure;
 namespace {
 
@@ -86,4 +86,4 @@ TEST(FitView, NothingToSeeChangesNothing) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_fit

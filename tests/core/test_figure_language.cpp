@@ -7,7 +7,7 @@
 #include "anamorph/figure/language/script_table.h"
 #include "figure_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_language {
 using namespace figure;
 namespace {
 
@@ -46,4 +46,4 @@ TEST(FigureLanguage, PagesNameWords) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_language

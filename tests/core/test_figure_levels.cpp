@@ -9,7 +9,7 @@
 #include "anamorph/figure/outline/simple_outlines.h"
 #include "figure_picture_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_levels {
 using namespace figure;
 namespace {
 
@@ -293,4 +293,4 @@ TEST(FigureLevels, CylindersAreJoinedByClipAndCreaseAndByArcs) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_levels

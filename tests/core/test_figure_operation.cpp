@@ -9,7 +9,7 @@
 
 #include "anamorph/operation/operation.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_operation {
 namespace {
 
 using testing::AllOf;
@@ -421,4 +421,4 @@ TEST(FigureOperation, MapsOfMraselAreTextures) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_operation

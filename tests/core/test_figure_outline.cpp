@@ -7,7 +7,7 @@
 
 #include "figure_outline_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_outline {
 using namespace figure;
 namespace {
 
@@ -73,4 +73,4 @@ TEST(FigureOutline, WindowsLeaveOutOnlyWhatIsOutside) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_outline

@@ -5,7 +5,7 @@
 
 #include "figure_outline_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_outline_crossing {
 using namespace figure;
 namespace {
 
@@ -278,4 +278,4 @@ TEST(FigureOutlineCrossing, TolerancesThatAskForTooMuchAreRefused) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_outline_crossing

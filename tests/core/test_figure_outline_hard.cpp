@@ -8,7 +8,7 @@
 #include "anamorph/figure/outline/outline_roots.h"
 #include "figure_outline_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_outline_hard {
 using namespace figure;
 namespace {
 
@@ -411,4 +411,4 @@ TEST(FigureOutlineHard, SmallBodiesHideWhatIsALittleBehindThem) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_outline_hard

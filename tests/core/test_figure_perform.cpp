@@ -12,7 +12,7 @@
 #include "anamorph/figure/language/timing.h"
 #include "figure_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_perform {
 using namespace figure;
 namespace {
 
@@ -488,4 +488,4 @@ TEST(FigureShapes, FigureInPieces) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_perform

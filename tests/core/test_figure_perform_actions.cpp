@@ -11,7 +11,7 @@
 #include "anamorph/figure/body/ellipsoid_distance.h"
 #include "figure_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_perform_actions {
 using namespace figure;
 namespace {
 
@@ -345,4 +345,4 @@ TEST(FigureOwnScripts, ForbiddenEllipsoidsStop) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_perform_actions

@@ -11,7 +11,7 @@
 #include "anamorph/figure/files/frame_file.h"
 #include "figure_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_perform_originals {
 using namespace figure;
 namespace {
 
@@ -106,4 +106,4 @@ INSTANTIATE_TEST_SUITE_P(All, FigureScript1980s, testing::Values("chol", "juggle
                          [](const auto& probe) { return std::string(probe.param); });
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_perform_originals

@@ -10,7 +10,7 @@
 
 #include "anamorph/figure/image/figure_picture.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_perturbation {
 using namespace figure;
 namespace {
 
@@ -168,4 +168,4 @@ TEST(FigurePerturbation, FewLevelsShowNoContours) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_perturbation

@@ -10,7 +10,7 @@
 #include "anamorph/error.h"
 #include "figure_picture_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_picture {
 using namespace figure;
 namespace {
 
@@ -329,4 +329,4 @@ TEST(FigurePicture, BadBodiesAreNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_picture

@@ -10,7 +10,7 @@
 #include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_relief {
 using namespace figure;
 namespace {
 
@@ -282,4 +282,4 @@ TEST(FigureRelief, HeightsThatAreNoNumbersOrFlatTurnNothing) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_relief

@@ -14,7 +14,7 @@
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script_table.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_script {
 using namespace figure;
 namespace {
 
@@ -604,4 +604,4 @@ TEST(FigureScript, DamagedAnywhere) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_script

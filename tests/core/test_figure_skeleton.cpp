@@ -8,7 +8,7 @@
 #include "anamorph/figure/outline/spheres.h"
 #include "figure_outline_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_skeleton {
 using namespace figure;
 namespace {
 
@@ -201,4 +201,4 @@ TEST(FigureSkeleton, ConnectionsOfAFrameComeFromItsJoints) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_skeleton

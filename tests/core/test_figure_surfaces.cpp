@@ -9,7 +9,7 @@
 #include "anamorph/figure/image/visible_surfaces.h"
 #include "figure_picture_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_surfaces {
 using namespace figure;
 namespace {
 
@@ -237,4 +237,4 @@ TEST(FigureSurfaces, ValuesThatAreNoNumbersAreNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_surfaces

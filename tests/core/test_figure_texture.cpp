@@ -8,7 +8,7 @@
 #include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_texture {
 using namespace figure;
 namespace {
 
@@ -234,4 +234,4 @@ TEST(FigureTexture, WhatIsMissingHasItsOwnColor) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_texture

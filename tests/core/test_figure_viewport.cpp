@@ -13,7 +13,7 @@
 #include "anamorph/figure/outline/drawing.h"
 #include "figure_outline_cases.h"
 
-namespace anamorph::test {
+namespace anamorph::test::test_figure_viewport {
 namespace {
 
 using namespace figure;
@@ -201,4 +201,4 @@ TEST(FigureViewport, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph::test
+}  // namespace anamorph::test::test_figure_viewport

@@ -10,9 +10,8 @@
 
 #include "anamorph/image/pixel.h"
 
+namespace anamorph::test_filter {
 namespace {
-
-using namespace anamorph;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -267,3 +266,4 @@ TEST(PointSampler, AFootprintIsTheMeanOfItsTaps) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_filter

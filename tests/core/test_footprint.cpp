@@ -12,9 +12,8 @@
 #include "anamorph/image/point_sampler.h"
 #include "anamorph/image/pyramid.h"
 
+namespace anamorph::test_footprint {
 namespace {
-
-using namespace anamorph;
 
 /// A source of given level sizes and nothing else.
 class Sizes final : public Source {
@@ -263,3 +262,4 @@ TEST(Footprint, OddSizesLoseLittle) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_footprint

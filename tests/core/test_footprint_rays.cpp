@@ -9,7 +9,7 @@
 #include "anamorph/panorama/reproject.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_footprint_rays {
 namespace {
 
 using enum Projection;
@@ -180,4 +180,4 @@ TEST(FootprintRays, BehindAFisheyeIsWhatStandsThere) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_footprint_rays

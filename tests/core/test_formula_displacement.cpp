@@ -16,7 +16,7 @@
 #include "anamorph/formula/formula_text.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_formula_displacement {
 namespace {
 
 using ::testing::HasSubstr;
@@ -302,4 +302,4 @@ TEST(FormulaDisplacement, TextIsOfUAndVAndFrame) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_formula_displacement

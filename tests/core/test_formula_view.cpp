@@ -16,7 +16,7 @@
 #include "each_instruction_set.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_formula_view {
 namespace {
 
 using enum Projection;
@@ -487,4 +487,4 @@ TEST(FormulaView, SmoothFormulasAreDrawnByBlocks) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_formula_view

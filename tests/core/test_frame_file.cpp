@@ -8,7 +8,7 @@
 
 #include "figure_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_frame_file {
 using namespace figure;
 namespace {
 
@@ -140,4 +140,4 @@ TEST(FrameFile, NumbersThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_frame_file

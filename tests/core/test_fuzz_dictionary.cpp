@@ -8,7 +8,7 @@
 
 #include "anamorph/operation/operation.h"
 
-namespace anamorph {
+namespace anamorph::test_fuzz_dictionary {
 namespace {
 
 /// What stands between the marks of tests/fuzz/fuzz.dict.
@@ -42,4 +42,4 @@ TEST(FuzzDictionary, HasTheWordsOfEveryOperation) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_fuzz_dictionary

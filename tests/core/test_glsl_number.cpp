@@ -7,6 +7,7 @@
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/panorama_glsl.h"
 
+namespace anamorph::test_glsl_number {
 namespace {
 
 using anamorph::GlslNumber;
@@ -63,3 +64,4 @@ TEST(PanoramaGlsl, HasAFunctionForEveryPieceOfEveryProjection) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_glsl_number

@@ -10,9 +10,8 @@
 #include "anamorph/image/pixel.h"
 #include "anamorph/number/half.h"
 
+namespace anamorph::test_half {
 namespace {
-
-using namespace anamorph;
 
 float reference(std::uint16_t half) {
     const int exponent = (half >> 10) & 31, fraction = half & 1023;
@@ -140,3 +139,4 @@ TEST(Pixel, AlphaMultipliesAndDividesColour) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_half

@@ -7,7 +7,7 @@
 #include "anamorph/error.h"
 #include "anamorph/panorama/hugin_project.h"
 
-namespace anamorph {
+namespace anamorph::test_hugin_project {
 namespace {
 
 using testing::HasSubstr;
@@ -260,4 +260,4 @@ TEST(HuginProject, PanniniHasTheDistanceOfItsCompression) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_hugin_project

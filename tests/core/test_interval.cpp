@@ -20,9 +20,9 @@ static void PrintTo(const Interval& a, std::ostream* out) {
 
 }  // namespace anamorph
 
+namespace anamorph::test_interval {
 namespace {
 
-using namespace anamorph;
 using Real = long double;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -331,3 +331,4 @@ TEST(Interval, WhatHasNoBoundFailsEveryBound) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_interval

@@ -14,7 +14,7 @@
 
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_jets {
 namespace {
 
 using simd::BoundJets;
@@ -193,4 +193,4 @@ TEST(NumbersJets, NothingIsKnownOfWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_jets

@@ -12,7 +12,7 @@
 #include "anamorph/mesh/mesh_file.h"
 #include "anamorph/morph/features_file.h"
 
-namespace anamorph {
+namespace anamorph::test_json_file {
 using namespace machine;
 namespace {
 
@@ -66,4 +66,4 @@ TEST(JsonFile, AKeyStandsOnceInAnObject) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_json_file

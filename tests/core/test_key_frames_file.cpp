@@ -9,7 +9,7 @@
 
 #include "anamorph/operation/operation.h"
 
-namespace anamorph {
+namespace anamorph::test_key_frames_file {
 namespace {
 
 using testing::ElementsAre;
@@ -141,4 +141,4 @@ TEST(DrapeFilm, RefusesWhatIsNoNumberOfThePicture) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_key_frames_file

@@ -10,7 +10,7 @@
 #include "anamorph/image/masked_source.h"
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_layered_picture {
 namespace {
 
 /// Pixels in memory.
@@ -231,4 +231,4 @@ TEST_F(Layers, AMissingSourceIsAnError) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_layered_picture

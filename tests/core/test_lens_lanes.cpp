@@ -13,7 +13,7 @@
 #include "each_instruction_set.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_lens_lanes {
 namespace {
 
 using simd::Four;
@@ -146,4 +146,4 @@ TEST(LensLanes, PolynomialsAreWithinTheirRounding) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_lens_lanes

@@ -14,7 +14,7 @@
 #include "block_points.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_lens_map {
 namespace {
 
 using oracle::chart_of;
@@ -279,4 +279,4 @@ TEST(LensMap, LensesAsTextAreTheSame) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_lens_map

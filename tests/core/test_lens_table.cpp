@@ -12,7 +12,7 @@
 #include "anamorph/panorama/panorama_plan.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_lens_table {
 namespace {
 
 using oracle::LensOracle;
@@ -207,4 +207,4 @@ TEST(LensTable, PicturesThroughLensesAreBlocks) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_lens_table

@@ -9,7 +9,7 @@
 #include "anamorph/mesh/mesh_plan.h"
 #include "anamorph/operation/operation.h"
 
-namespace anamorph {
+namespace anamorph::test_machine_map {
 using namespace machine;
 namespace {
 
@@ -67,4 +67,4 @@ TEST(MachineMap, ComputesEachPixelOnceAndOnlyThoseAboutATile) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_machine_map

@@ -10,7 +10,7 @@
 #include "anamorph/mesh/mesh.h"
 #include "mesh_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_mesh {
 namespace {
 
 using J = Jet1<double>;
@@ -244,4 +244,4 @@ TEST(Mesh, RefusesWhatIsNoMesh) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mesh

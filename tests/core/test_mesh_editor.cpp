@@ -14,7 +14,7 @@
 #include "anamorph/mesh/mesh_warp.h"
 #include "mesh_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_mesh_editor {
 namespace {
 
 using Place = MeshEditor::Place;
@@ -358,4 +358,4 @@ TEST(MeshEditor, OutsideOfChangedPixelsAPictureHasTheSameBits) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mesh_editor

@@ -9,7 +9,7 @@
 #include "anamorph/mesh/mesh.h"
 #include "anamorph/mesh/mesh_file.h"
 
-namespace anamorph {
+namespace anamorph::test_mesh_file {
 namespace {
 
 using ::testing::AllOf;
@@ -164,4 +164,4 @@ TEST(MeshFile, PixelsOfAnStMapThatAreNoNumbersAreHoles) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mesh_file

@@ -10,7 +10,7 @@
 #include "anamorph/mesh/mesh_file.h"
 #include "anamorph/mesh/mesh_warp.h"
 
-namespace anamorph {
+namespace anamorph::test_mesh_folds {
 namespace {
 
 double folded_fraction(const Picture& picture) {
@@ -115,4 +115,4 @@ TEST(MeshFolds, AMapAcrossTheSeamIsNotTurnedOver) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mesh_folds

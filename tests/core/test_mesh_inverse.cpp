@@ -9,7 +9,7 @@
 #include "mesh_cases.h"
 #include "warp_findings.h"
 
-namespace anamorph {
+namespace anamorph::test_mesh_inverse {
 namespace {
 
 constexpr double kTols[] = {1, 1.0 / 4, 1.0 / 16, 1.0 / 64, 0.01};
@@ -189,4 +189,4 @@ TEST(MeshInverse, MostPixelsNeedNoExactPoints) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mesh_inverse

@@ -12,7 +12,7 @@
 #include "anamorph/mesh/mesh_warp.h"
 #include "mesh_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_mesh_warp {
 namespace {
 
 /// Packed float pixels.
@@ -391,4 +391,4 @@ TEST(MeshWarp, SaysWhatHasNoMeshToDraw) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mesh_warp

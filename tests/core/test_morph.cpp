@@ -11,7 +11,7 @@
 
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::test_morph {
 namespace {
 
 /// A packed picture and its source.
@@ -318,4 +318,4 @@ TEST(Morph, BadParametersAreNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_morph

@@ -15,7 +15,7 @@
 #include "anamorph/image/source.h"
 #include "anamorph/operation/operation.h"
 
-namespace anamorph {
+namespace anamorph::test_morph_unit {
 using namespace machine;
 namespace {
 
@@ -327,4 +327,4 @@ TEST(MorphUnit, WhatItCannotDoIsSaid) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_morph_unit

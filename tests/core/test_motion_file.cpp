@@ -14,7 +14,7 @@
 #include "anamorph/figure/files/frame_file.h"
 #include "anamorph/figure/files/motion_file.h"
 
-namespace anamorph {
+namespace anamorph::test_motion_file {
 using namespace figure;
 namespace {
 
@@ -273,4 +273,4 @@ TEST(Frames, AreReadAsAMotion) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_motion_file

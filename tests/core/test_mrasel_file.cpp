@@ -9,7 +9,7 @@
 #include "anamorph/error.h"
 #include "anamorph/figure/files/motion_file.h"
 
-namespace anamorph {
+namespace anamorph::test_mrasel_file {
 using namespace figure;
 namespace {
 
@@ -75,4 +75,4 @@ TEST(MraselFile, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mrasel_file

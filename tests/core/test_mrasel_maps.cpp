@@ -10,7 +10,7 @@
 
 #include "anamorph/error.h"
 
-namespace anamorph {
+namespace anamorph::test_mrasel_maps {
 using namespace figure;
 namespace {
 
@@ -116,4 +116,4 @@ TEST(MraselMaps, ShownInOnePicture) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_mrasel_maps

@@ -13,7 +13,7 @@
 #include "each_feature_block.h"
 #include "feature_families.h"
 
-namespace anamorph {
+namespace anamorph::test_near_far {
 namespace {
 
 /// The worst pixel of a plan, and what it promised.
@@ -715,4 +715,4 @@ TEST(NearFar, BadTolerancesAreNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_near_far

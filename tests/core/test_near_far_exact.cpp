@@ -8,9 +8,8 @@
 #include "anamorph/morph/near_far.h"
 #include "each_feature_block.h"
 
+namespace anamorph::test_near_far_exact {
 namespace {
-
-using namespace anamorph;
 
 constexpr int kSize = 32;
 constexpr double kMoved = 8, kMiddle = 10.5;  ///< the pixel is (15, 10)
@@ -69,3 +68,4 @@ TEST(NearFarExact, LinesThroughThePixelToTheLastDigit) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_near_far_exact

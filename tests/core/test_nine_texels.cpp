@@ -14,7 +14,7 @@
 #include "each_instruction_set.h"
 #include "guarded_memory.h"
 
-namespace anamorph {
+namespace anamorph::test_nine_texels {
 namespace {
 
 constexpr unsigned kSeed = 20261129;
@@ -254,4 +254,4 @@ TEST(NineTexels, TexelsThatAreNoNumbersCountWhereTheyHaveWeight) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_nine_texels

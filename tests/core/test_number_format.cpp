@@ -12,7 +12,7 @@
 #include "anamorph/error.h"
 #include "anamorph/number/half.h"
 
-namespace anamorph {
+namespace anamorph::test_number_format {
 using namespace machine;
 namespace {
 
@@ -249,4 +249,4 @@ TEST(NumberFormat, NamesReadBack) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_number_format

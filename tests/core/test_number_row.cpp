@@ -15,7 +15,7 @@
 #include "anamorph/figure/outline/outline.h"
 #include "anamorph/figure/outline/spheres.h"
 
-namespace anamorph {
+namespace anamorph::test_number_row {
 using namespace figure;
 namespace {
 
@@ -80,4 +80,4 @@ TEST(NumberRow, IsWhatTheCoreAccepts) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_number_row

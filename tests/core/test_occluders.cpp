@@ -14,7 +14,7 @@
 
 #include "anamorph/projector/projected_triangles.h"
 
-namespace anamorph {
+namespace anamorph::test_occluders {
 namespace {
 
 using Triangle = std::array<glm::dvec3, 3>;
@@ -343,4 +343,4 @@ TEST(Occluders, DustTakesTrianglesButEnds) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_occluders

@@ -11,7 +11,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::test_operations {
 namespace {
 
 using testing::HasSubstr;
@@ -255,4 +255,4 @@ TEST(OperationKey, DiffersWithEveryKeyOfEveryOperation) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_operations

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::test_outline_roots {
 using namespace figure;
 namespace {
 
@@ -177,4 +177,4 @@ TEST(OutlineRoots, NearTangentsAreNeitherMissedNorDoubled) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_outline_roots

@@ -16,7 +16,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_overscan {
 namespace {
 
 /// Seeded noise with a slope, in memory.
@@ -427,4 +427,4 @@ TEST(Overscan, KeysTellIt) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_overscan

@@ -17,7 +17,7 @@
 #include "each_instruction_set.h"
 #include "function_map.h"
 
-namespace anamorph {
+namespace anamorph::test_own_taps {
 namespace {
 
 constexpr unsigned kSeed = 20261129;
@@ -422,4 +422,4 @@ TEST(OwnTaps, TexelsThatAreNoNumbersCountWhereTheyHaveWeight) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_own_taps

@@ -15,7 +15,7 @@
 #include "each_instruction_set.h"
 #include "guarded_memory.h"
 
-namespace anamorph {
+namespace anamorph::test_packed_blocks {
 namespace {
 
 constexpr unsigned kSeed = 20261122;
@@ -265,4 +265,4 @@ TEST(PackedBlocks, PixelsWithGapsHaveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_packed_blocks

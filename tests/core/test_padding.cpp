@@ -14,7 +14,7 @@
 #include "anamorph/number/rounded.h"
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_padding {
 namespace {
 
 constexpr unsigned kSeed = 20261;
@@ -258,4 +258,4 @@ TEST(ChartPadding, ErrorsNameTheParameterItsValueAndWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_padding

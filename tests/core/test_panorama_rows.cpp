@@ -12,7 +12,7 @@
 #include "anamorph/panorama/panorama.h"
 #include "projection_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_panorama_rows {
 namespace {
 
 /// Distance in source pixels; around a source that turns, or from face to face, points of one ray are one.
@@ -106,4 +106,4 @@ TEST(PanoramaRows, AreWithinTheBoundThroughLenses) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_panorama_rows

@@ -13,7 +13,7 @@
 #include "anamorph/operation/rows.h"
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_parameter {
 namespace {
 
 using testing::AllOf;
@@ -510,4 +510,4 @@ TEST(ReferencePage, HasEveryParameter) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_parameter

@@ -21,7 +21,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::test_picture_hash {
 namespace {
 
 /// Whole numbers that look random, of the places of numbers, with no help of a library.
@@ -470,4 +470,4 @@ TEST(PictureHash, EveryNanIsTheSame) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_picture_hash

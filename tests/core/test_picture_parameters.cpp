@@ -8,7 +8,7 @@
 #include "anamorph/operation/morph.h"
 #include "anamorph/operation/warp.h"
 
-namespace anamorph {
+namespace anamorph::test_picture_parameters {
 namespace {
 
 using testing::AllOf;
@@ -216,4 +216,4 @@ TEST(MorphRequest, AFilmRunsOverT) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_picture_parameters

@@ -19,7 +19,7 @@
 #include "anamorph/surface/surface.h"
 #include "places_file.h"
 
-namespace anamorph {
+namespace anamorph::test_places {
 using namespace surface;
 namespace {
 
@@ -573,4 +573,4 @@ TEST(Places, FilesAreReadStrictly) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_places

@@ -11,7 +11,7 @@
 #include "block_points.h"
 #include "projection_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_plan {
 namespace {
 
 struct View {
@@ -285,4 +285,4 @@ TEST(Plan, TablesServeWhereTheyCan) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_plan

@@ -8,7 +8,7 @@
 #include "anamorph/plan/formula_plan_impl.h"
 #include "block_points.h"
 
-namespace anamorph {
+namespace anamorph::test_plan_formula {
 namespace {
 
 /// A lens: radii r, in units of `unit` target pixels from a centre, become r (1 + k1 r^2 + k2 r^4), up to a
@@ -206,4 +206,4 @@ TEST(FormulaPlan, BlocksDoNotDependOnTheOrderOfRegions) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_plan_formula

@@ -13,8 +13,7 @@
 
 #include "anamorph/error.h"
 
-using namespace anamorph;
-
+namespace anamorph::test_plane_warp {
 namespace {
 
 class Random {
@@ -48,8 +47,6 @@ class Random {
 Deformation along_u(double x) {
     return {{x, 0, 0}, {0, 0}, {1, 1}};
 }
-
-}  // namespace
 
 TEST(ParameterPlane, ParametersOfItsPoints) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -205,3 +202,6 @@ TEST(PlaneWarp, HardCases) {
     EXPECT_THROW(PlaneWarp({}, {{{1, 0, 0}, {0, 0}, {0, 1}}}), Error);
     EXPECT_EQ(PlaneWarp({}, {}).forward({1, 2, 3}), glm::dvec3(1, 2, 3));
 }
+
+}  // namespace
+}  // namespace anamorph::test_plane_warp

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace anamorph::surface {
+namespace anamorph::surface::test_polish {
 namespace {
 
 // Waves that are seen aslant hide parts of themselves: from points on one side of a fold Newton's method may lead to the other.
@@ -54,4 +54,4 @@ TEST(PointPolish, SharedSlopesProveWhatTheyHoldAlone) {
 }
 
 }  // namespace
-}  // namespace anamorph::surface
+}  // namespace anamorph::surface::test_polish

@@ -12,7 +12,7 @@
 #include "anamorph/mesh/scattered.h"
 #include "scattered_findings.h"
 
-namespace anamorph {
+namespace anamorph::test_polygon_mesh {
 namespace {
 
 using testing::AllOf;
@@ -202,4 +202,4 @@ TEST(PolygonMesh, AFileHasPolygons) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_polygon_mesh

@@ -11,7 +11,7 @@
 
 #include "anamorph/error.h"
 
-namespace anamorph {
+namespace anamorph::test_projection_bake {
 namespace {
 
 using Real = long double;
@@ -262,4 +262,4 @@ TEST(ProjectionBake, RefusesInWordsAndTakesTrianglesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_projection_bake

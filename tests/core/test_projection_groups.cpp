@@ -11,7 +11,7 @@
 
 #include "anamorph/error.h"
 
-namespace anamorph {
+namespace anamorph::test_projection_groups {
 namespace {
 
 using Real = long double;
@@ -168,4 +168,4 @@ TEST(ProjectionGroups, DirectionsNextToTheAxisAndNone) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_projection_groups

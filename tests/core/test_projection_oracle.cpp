@@ -15,7 +15,7 @@
 #include "anamorph/panorama/panorama_plan.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_projection_oracle {
 namespace {
 
 using Real = long double;
@@ -536,4 +536,4 @@ TEST(ProjectionOracle, PanninisFieldOfViewStaysBelowItsLimit) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_projection_oracle

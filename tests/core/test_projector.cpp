@@ -16,7 +16,7 @@
 #include "panorama_oracle.h"
 #include "projection_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_projector {
 namespace {
 
 using testing::HasSubstr;
@@ -579,4 +579,4 @@ TEST(ProjectedTriangles, RoundedToFloatCornersFitAndAreFloats) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_projector

@@ -11,7 +11,7 @@
 #include "anamorph/panorama/concentric.h"
 #include "panorama_oracle.h"
 
-namespace anamorph {
+namespace anamorph::test_proof_constants {
 namespace {
 
 using oracle::kPi;
@@ -351,4 +351,4 @@ TEST(ProofConstants, FisheyesHaveBoundsNextToTheirAxis) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_proof_constants

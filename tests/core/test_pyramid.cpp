@@ -14,9 +14,8 @@
 
 #include "anamorph/image/pixel.h"
 
+namespace anamorph::test_pyramid {
 namespace {
-
-using namespace anamorph;
 
 constexpr PixelType kTypes[] = {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32};
 
@@ -337,3 +336,4 @@ TEST(Pyramid, NanStaysLocal) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_pyramid

@@ -12,7 +12,7 @@
 #include "anamorph/mesh/mesh_warp.h"
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_reading {
 namespace {
 
 using Real = long double;
@@ -276,4 +276,4 @@ TEST(Reading, ThroughALensThatRolls) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_reading

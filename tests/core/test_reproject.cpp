@@ -14,7 +14,7 @@
 #include "anamorph/image/pyramid.h"
 #include "anamorph/panorama/reproject.h"
 
-namespace anamorph {
+namespace anamorph::test_reproject {
 namespace {
 
 struct Picture {
@@ -560,4 +560,4 @@ TEST(Reproject, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_reproject

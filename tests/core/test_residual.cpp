@@ -7,7 +7,7 @@
 
 #include "anamorph/panorama/panorama_residual.h"
 
-namespace anamorph {
+namespace anamorph::test_residual {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -76,4 +76,4 @@ TEST(Residual, LinearPartIsTheDerivativeElsewhere) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_residual

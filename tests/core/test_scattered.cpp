@@ -11,7 +11,7 @@
 #include "mesh_cases.h"
 #include "scattered_findings.h"
 
-namespace anamorph {
+namespace anamorph::test_scattered {
 namespace {
 
 using ::testing::AllOf;
@@ -212,4 +212,4 @@ TEST(Scattered, RefusesWhatAreNoPoints) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_scattered

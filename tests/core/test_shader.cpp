@@ -13,7 +13,7 @@
 #include "anamorph/number/half.h"
 #include "mesh_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_shader {
 using namespace machine;
 namespace {
 
@@ -505,4 +505,4 @@ TEST(ShadedWarp, SaturatesAndCounts) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_shader

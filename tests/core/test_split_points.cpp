@@ -13,7 +13,7 @@
 #include "anamorph/image/split_points.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_split_points {
 namespace {
 
 TEST(SplitPoints, WholeAndRestAreThePoint) {
@@ -131,4 +131,4 @@ TEST(PlaceIn, CountsTexelsFromTheCornerAndFindsThoseOutside) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_split_points

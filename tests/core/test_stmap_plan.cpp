@@ -13,7 +13,7 @@
 #include "anamorph/mesh/stmap_plan.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_stmap_plan {
 namespace {
 
 constexpr unsigned kSeed = 31;
@@ -190,4 +190,4 @@ TEST(StMapPlan, TheSameBitsOnAllInstructionSets) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_stmap_plan

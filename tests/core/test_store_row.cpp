@@ -12,7 +12,7 @@
 #include "anamorph/image/window.h"
 #include "guarded_memory.h"
 
-namespace anamorph {
+namespace anamorph::test_store_row {
 namespace {
 
 TEST(StoreRow, StaysWithinItsRow) {
@@ -144,4 +144,4 @@ TEST(SampleRow, EveryHalfIsLoadedOnEveryInstructionSet) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_store_row

@@ -16,7 +16,7 @@
 #include "anamorph/image/pyramid.h"
 #include "drape_scene.h"
 
-namespace anamorph {
+namespace anamorph::test_summed_areas {
 using namespace surface;
 namespace {
 
@@ -412,4 +412,4 @@ TEST(SummedAreas, EveryPartOfADrapeHasTheSameBits) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_summed_areas

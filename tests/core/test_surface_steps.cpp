@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace anamorph {
+namespace anamorph::test_surface_steps {
 using namespace figure;
 namespace {
 
@@ -67,4 +67,4 @@ TEST(SurfaceSteps, AreFewWhereTheToleranceIsWideAndNoneWhereItIsTooSmall) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_surface_steps

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace anamorph {
+namespace anamorph::test_taylor {
 namespace {
 
 using Quartic = Jet<double, 4>;
@@ -73,4 +73,4 @@ TEST(Taylor, OneTermIsAsFarAsItSays) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_taylor

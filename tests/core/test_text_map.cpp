@@ -15,7 +15,7 @@
 #include "block_points.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_text_map {
 namespace {
 
 constexpr Size kPicture{48, 32}, kSource{200, 100};
@@ -907,4 +907,4 @@ TEST(TextMap, SmoothFormulasAreDrawnByBlocks) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_text_map

@@ -8,7 +8,7 @@
 #include "anamorph/error.h"
 #include "anamorph/projector/tour_file.h"
 
-namespace anamorph {
+namespace anamorph::test_tour_file {
 namespace {
 
 using testing::StartsWith;
@@ -86,4 +86,4 @@ TEST(Tour, SaysWhatIsWrongInOneLine) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_tour_file

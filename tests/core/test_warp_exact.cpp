@@ -11,7 +11,7 @@
 #include "warp_findings.h"
 #include "warp_oracles.h"
 
-namespace anamorph {
+namespace anamorph::test_warp_exact {
 namespace {
 
 const Size kTarget{180, 130}, kSource{320, 200};
@@ -262,4 +262,4 @@ TEST(WarpExact, ManyLayersAreToldApart) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_warp_exact

@@ -14,7 +14,7 @@
 #include "anamorph/machine/shaded_warp.h"
 #include "anamorph/operation/operation.h"
 
-namespace anamorph {
+namespace anamorph::test_warp_program {
 using namespace machine;
 namespace {
 
@@ -466,4 +466,4 @@ TEST(PrintedProgram, WhatIsWrongIsSaid) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_warp_program

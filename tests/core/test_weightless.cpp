@@ -17,7 +17,7 @@
 #include "each_instruction_set.h"
 #include "function_map.h"
 
-namespace anamorph {
+namespace anamorph::test_weightless {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
@@ -232,4 +232,4 @@ TEST(Weightless, NearestMovesEveryBit) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_weightless

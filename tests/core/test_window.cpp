@@ -14,9 +14,9 @@
 #include "anamorph/image/pixel.h"
 #include "remote_source.h"
 
+namespace anamorph::test_window {
 namespace {
 
-using namespace anamorph;
 using test::Remote;
 
 /// Random bytes as pixels; `padding` bytes between rows.
@@ -257,3 +257,4 @@ TEST(Window, WhatCannotBeHadIsRefused) {
 }
 
 }  // namespace
+}  // namespace anamorph::test_window

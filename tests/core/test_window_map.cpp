@@ -10,7 +10,7 @@
 #include "anamorph/mesh/st_windows.h"
 #include "mesh_cases.h"
 
-namespace anamorph {
+namespace anamorph::test_window_map {
 namespace {
 
 constexpr unsigned kSeed = 7101;
@@ -149,4 +149,4 @@ TEST(WindowMap, CubicsOfStMapsAreOffByNoMoreThanTheySay) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_window_map

@@ -9,7 +9,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_cameras {
 namespace {
 
 using namespace testing_oiio;
@@ -520,4 +520,4 @@ TEST_F(Cameras, EquiAngularCubesMayBeOblong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_cameras

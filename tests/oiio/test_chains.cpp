@@ -9,7 +9,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_chains {
 namespace {
 
 using namespace testing_oiio;
@@ -482,4 +482,4 @@ TEST_F(Chains, AreOnePicture) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_chains

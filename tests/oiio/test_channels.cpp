@@ -6,7 +6,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_channels {
 namespace {
 
 using namespace testing_oiio;
@@ -407,4 +407,4 @@ TEST_F(Channels, AreNamedWhereTheyAreNotKnown) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_channels

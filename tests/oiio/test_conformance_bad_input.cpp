@@ -5,7 +5,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_conformance_bad_input {
 namespace {
 
 using namespace testing_oiio;
@@ -261,4 +261,4 @@ TEST_F(BadInput, conformance_32_random_names_and_recipes) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_conformance_bad_input

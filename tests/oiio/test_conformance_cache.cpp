@@ -15,7 +15,7 @@
 #include "anamorph/panorama/panorama.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_conformance_cache {
 namespace {
 
 using namespace testing_oiio;
@@ -353,4 +353,4 @@ TEST_F(CacheConformance, conformance_31_a_thousand_opens) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_conformance_cache

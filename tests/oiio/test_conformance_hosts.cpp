@@ -7,7 +7,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_conformance_hosts {
 namespace {
 
 using namespace testing_oiio;
@@ -236,4 +236,4 @@ TEST_F(Hosts, a_source_map_drives_st_warp) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_conformance_hosts

@@ -9,7 +9,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_conformance_input {
 namespace {
 
 using namespace testing_oiio;
@@ -351,4 +351,4 @@ TEST_F(InputConformance, conformance_14_tiles_and_threads_never_change_pixels) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_conformance_input

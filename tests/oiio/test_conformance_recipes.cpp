@@ -13,7 +13,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_conformance_recipes {
 namespace {
 
 using namespace testing_oiio;
@@ -430,4 +430,4 @@ TEST_P(RecipeConformance, conformance_21_32_random_names_and_recipes) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_conformance_recipes

@@ -7,7 +7,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_coverage {
 namespace {
 
 using namespace testing_oiio;
@@ -303,4 +303,4 @@ TEST_F(Coverage, IsRefusedWhereColorsAreNotFaded) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_coverage

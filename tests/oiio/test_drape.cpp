@@ -11,7 +11,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_drape {
 namespace {
 
 using namespace testing_oiio;
@@ -340,4 +340,4 @@ TEST_F(DrapeFiles, DesignedSurfacesAreFoundBesideTheirRecipe) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_drape

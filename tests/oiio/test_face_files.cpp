@@ -7,7 +7,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_face_files {
 namespace {
 
 using namespace testing_oiio;
@@ -283,4 +283,4 @@ TEST_F(FaceFilesInAFolder, SayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_face_files

@@ -6,7 +6,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_figure {
 namespace {
 
 using namespace testing_oiio;
@@ -173,4 +173,4 @@ TEST_F(Figure, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure

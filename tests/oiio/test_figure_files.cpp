@@ -7,7 +7,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_figure_files {
 namespace {
 
 using namespace testing_oiio;
@@ -174,4 +174,4 @@ TEST_F(FigureBackgrounds, MipsAreAPictureForEachTexture) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_figure_files

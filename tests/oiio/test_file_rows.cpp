@@ -11,7 +11,7 @@
 #include "anamorph/image_source.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_file_rows {
 namespace {
 
 using namespace testing_oiio;
@@ -169,4 +169,4 @@ TEST_F(UntiledSources, TakeMemoryForTheirRowsInTheirOwnType) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_file_rows

@@ -4,7 +4,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_films {
 namespace {
 
 using namespace testing_oiio;
@@ -106,4 +106,4 @@ TEST_F(Films, AreRefusedWhereTheyCannotBe) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_films

@@ -7,7 +7,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_lens {
 namespace {
 
 using namespace testing_oiio;
@@ -250,4 +250,4 @@ TEST_F(LensRecipe, SaysWhatItsPictureIs) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_lens

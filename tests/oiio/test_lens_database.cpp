@@ -15,7 +15,7 @@
 #include <lensfun/lensfun.h>
 #endif
 
-namespace anamorph {
+namespace anamorph::test_lens_database {
 namespace {
 
 using namespace testing_oiio;
@@ -348,4 +348,4 @@ TEST(LensDatabase, IsRefusedWhereItIsNotBuiltIn) {
 #endif
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_lens_database

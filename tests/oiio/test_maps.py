@@ -267,7 +267,7 @@ class Maps(unittest.TestCase):
     def test_source_points(self):
         for function, tries in TRIED.items():
             for settings in tries:
-                for size in ((480, 320), (300, 300), (101, 77)):
+                for size in ((480, 320), (300, 300), (101, 77))[:None if not settings else 1]:
                     with self.subTest(map=function.__name__, **settings, size=size):
                         with np.errstate(invalid="ignore", divide="ignore"):
                             self.compare(function, size, settings)

@@ -11,7 +11,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_metadata {
 namespace {
 
 using namespace testing_oiio;
@@ -525,4 +525,4 @@ TEST_F(Metadata, StockProgramsKnowAnEnvironment) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_metadata

@@ -9,7 +9,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_morph {
 namespace {
 
 using namespace testing_oiio;
@@ -364,4 +364,4 @@ TEST_F(Morph, LayersBelongToThePicturesThatTheyLinkTo) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_morph

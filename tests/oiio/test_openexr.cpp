@@ -7,7 +7,7 @@
 
 #include "anamorph/chart/chart.h"
 
-namespace anamorph {
+namespace anamorph::test_openexr {
 namespace {
 
 /// Our ray in OpenEXR's frame: x to the left, y up, z forward.
@@ -60,4 +60,4 @@ TEST(OpenExr, CubeMap) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_openexr

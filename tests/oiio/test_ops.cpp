@@ -15,7 +15,7 @@
 #include "anamorph/parallel.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_ops {
 namespace {
 
 using namespace testing_oiio;
@@ -417,4 +417,4 @@ TEST(ParallelFor, RunsEachIndexOnceAndNests) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_ops

@@ -6,7 +6,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_overscan {
 namespace {
 
 using namespace testing_oiio;
@@ -282,4 +282,4 @@ TEST_F(Overscan, IsRefusedWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_overscan

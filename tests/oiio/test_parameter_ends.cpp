@@ -11,7 +11,7 @@
 #include "anamorph/panorama/concentric.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_parameter_ends {
 namespace {
 
 using namespace testing_oiio;
@@ -232,4 +232,4 @@ TEST_F(ParameterEnds, EveryRowAcceptsWhatItSaysAndNoMore) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_parameter_ends

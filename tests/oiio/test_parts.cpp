@@ -6,7 +6,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_parts {
 namespace {
 
 using namespace testing_oiio;
@@ -258,4 +258,4 @@ TEST_F(Parts, ErrorsNameTheirKeys) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_parts

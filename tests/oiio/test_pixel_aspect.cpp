@@ -7,7 +7,7 @@
 
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_pixel_aspect {
 namespace {
 
 using namespace testing_oiio;
@@ -249,4 +249,4 @@ TEST_F(PixelAspect, IsRefusedWhereItMeansNothing) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_pixel_aspect

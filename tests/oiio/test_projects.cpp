@@ -8,7 +8,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_projects {
 namespace {
 
 using namespace testing_oiio;
@@ -228,4 +228,4 @@ TEST_F(Projects, SayWhatIsWrongWithThem) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_projects

@@ -21,7 +21,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_recipe_files {
 namespace {
 
 using namespace testing_oiio;
@@ -336,4 +336,4 @@ TEST_F(RecipeFiles, MemoryThatCannotBeHadIsCalledSo) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_recipe_files

@@ -9,7 +9,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_stored_values {
 namespace {
 
 using namespace testing_oiio;
@@ -205,4 +205,4 @@ TEST_F(StoredValues, ImagesInMemoryToo) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_stored_values

@@ -2,7 +2,7 @@
 // What is handed out in tiles, and to which programs in scanlines: those that write what they read as it came keep the source's habit.
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_tiles {
 namespace {
 
 using namespace testing_oiio;
@@ -61,4 +61,4 @@ TEST_F(Tiles, OthersReadAsFarAsTheyNeed) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_tiles

@@ -7,7 +7,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_toys {
 namespace {
 
 using namespace testing_oiio;
@@ -61,5 +61,5 @@ TEST_F(Toys, TheOperationIsARecipeAndAFunction) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_toys
 #endif

@@ -11,7 +11,7 @@
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
-namespace anamorph {
+namespace anamorph::test_warp {
 namespace {
 
 using namespace testing_oiio;
@@ -507,4 +507,4 @@ TEST_F(Warp, WhatFailsSaysWhyInALine) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_warp
