@@ -17,7 +17,7 @@
 #include "anamorph/error.h"
 #include "each_instruction_set.h"
 
-namespace anamorph {
+namespace anamorph::test_deform_frame {
 namespace {
 
 using ::testing::HasSubstr;
@@ -428,4 +428,4 @@ TEST(DeformMirror, BadFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace anamorph
+}  // namespace anamorph::test_deform_frame
