@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -54,7 +53,6 @@ SceneTriangles room_of(int quads) {
 
 /// Between a ray and that of a texel, in texels of the panorama's middle.
 long double turned(const long double (&ray)[3], long double u, long double v, int width, int height) {
-    constexpr long double kPi = std::numbers::pi_v<long double>;
     const long double a = (u / width - 0.5L) * 2 * kPi, e = (v / height - 0.5L) * kPi,
                       n = std::sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
     const long double x = ray[0] / n - std::sin(a) * std::cos(e), y = ray[1] / n - std::sin(e),
@@ -64,7 +62,6 @@ long double turned(const long double (&ray)[3], long double u, long double v, in
 
 /// The formula of an equirectangular panorama in long double, against what is interpolated.
 Accuracy accuracy(const Projector& projector, const std::vector<PaintedTriangle>& pieces) {
-    constexpr long double kPi = std::numbers::pi_v<long double>;
     const int width = projector.panorama().width(), height = projector.panorama().height();
     std::vector<float> errors;
     for (const PaintedTriangle& piece : pieces)

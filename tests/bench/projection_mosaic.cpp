@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numbers>
 #include <vector>
 
 #include "anamorph/image/part_source.h"
@@ -13,9 +12,6 @@
 
 namespace anamorph::bench {
 namespace {
-
-using Real = long double;
-constexpr Real kPi = std::numbers::pi_v<Real>;
 
 constexpr int kCircles = 5, kMiddle = 3, kMostSide = 1024;
 constexpr double kDepth = 3, kYaw = 30, kRight = 0.4, kAhead = -0.3;

@@ -13,7 +13,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 #endif
 
 namespace anamorph::bench {
@@ -21,8 +20,6 @@ namespace anamorph::bench {
 #ifdef ANAMORPH_HAVE_VTK
 namespace {
 
-using Real = long double;
-constexpr Real kPi = std::numbers::pi_v<Real>;
 using Vector = std::array<Real, 3>;
 
 /// No corner is shared: VTK does as much for each triangle as the others.

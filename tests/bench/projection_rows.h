@@ -3,12 +3,17 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "anamorph/projector/projected_triangles.h"
 #include "bench.h"
 
 namespace anamorph::bench {
+
+/// What references are computed in.
+using Real = long double;
+inline constexpr Real kPi = std::numbers::pi_v<Real>;
 
 using SceneTriangles = std::vector<std::array<glm::dvec3, 3>>;
 

@@ -457,6 +457,19 @@ TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
         {lens(photo, "ptlens:b=-0.45"), flat, {0, 0, 0}, 0.01},
         {sphere, lens(flat, "ptlens:b=-0.45"), {0, 0, 0}, 0.01},
         {lens({fisheye, 3000, 2000, 150}, "3de4:k1=-0.6"), lens(fish, "kb4:k1=-0.05"), {0, 10, 0}, 0.01},
+        // Pictures whose columns are azimuths, with edges that a lens bends.
+        {lens({cylindrical, 6000, 2500, 200}, "ptlens:a=0.02,b=-0.05,c=0.01,d=30,e=-20"),
+         flat,
+         {80, 10, 5},
+         0.01},
+        {lens({cylindrical, 6000, 1500, 340}, "ptlens:a=0.01,b=-0.02"), flat, {170, 0, 20}, 0.01},
+        {lens({equirectangular, 6000, 3000, 300}, "poly:k0=0.05"), fish, {120, 40, 5}, 0.01},
+        {sphere, lens({cylindrical, 90, 60, 150}, "ptlens:b=0.05,c=-0.02"), {170, 20, 30}, 0.01},
+        {sphere, lens({equirectangular, 90, 60, 250}, "poly:k0=-0.03"), {10, 80, 30}, 0.01},
+        {lens({equirectangular, 6000, 3000, 300}, "ptlens:b=0.03"),
+         lens({cylindrical, 90, 60, 150}, "ptlens:b=-0.03"),
+         {5, 5, 5},
+         1e-4},
     };
     for (Scene scene : scenes)
         for (const Scheme scheme : {Scheme::automatic, Scheme::blocks, Scheme::residual, Scheme::direct}) {

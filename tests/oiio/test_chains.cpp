@@ -353,7 +353,8 @@ TEST_F(Chains, GoThroughSmallWarps) {
                       .status,
                   0);
         const std::string view = "v.pano?from=rectilinear&srcfov=84&fov=70&yaw=6&size=90x70";
-        for (const std::string keys : {"mesh=st.exr", "mesh=rough.json&size=" + std::string(size)}) {
+        for (const std::string& keys :
+             {std::string("mesh=st.exr"), "mesh=rough.json&size=" + std::string(size)}) {
             const std::string inner = view + "&src=(plate.exr.warp?" + keys + ")",
                               outer = "w.warp?" + keys + "&src=(plate.exr.lens?lens=3de4:k1=0.03)";
             EXPECT_EQ(chain_of(inner), "pano of warp");
