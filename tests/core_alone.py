@@ -72,7 +72,7 @@ def main():
         found = HOST_HEADER.search(headers)
         if found:
             sys.exit(f"{name} reads a host's header: {found.group()}")
-    if count < 100:
+    if count < 70:
         sys.exit(f"ninja knows what {count} objects read: too few to say something of the core")
     print(f"{len(alone)} commands are the same; {count} objects read no host's header")
 

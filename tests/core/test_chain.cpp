@@ -791,8 +791,11 @@ TEST(Chain, SaysWhyItDoesNotJoin) {
     EXPECT_EQ(reason(other, lens.picture), "wrap goes on beyond its source's edges");
     const Link rough = stmap_link(plate, plate, {0.4}, settings);
     EXPECT_EQ(reason(rough.picture, lens.picture), "it has an ST-map that is rough or small");
-    EXPECT_EQ(reason(lens.picture, stmap_link({60, 50}, plate, {}, settings).picture),
+    EXPECT_EQ(reason(lens.picture, stmap_link({90, 60}, plate, {0.4}, settings).picture),
               "its source has an ST-map that is rough or small");
+    // Of few pixels any is joined.
+    EXPECT_TRUE(
+        joined_picture(lens.picture, stmap_link({60, 50}, plate, {0.4}, settings).picture, shown).picture);
     // A mesh of small cells is quicker drawn by itself where they differ.
     const Link dense = mesh_link(3, 40, 0, plate, plate, settings);
     EXPECT_EQ(reason(dense.picture, lens.picture), "it has a mesh of small cells that differ");

@@ -165,7 +165,7 @@ TEST_F(Warp, AnStMapSaysHowLargeThePictureIs) {
 TEST_F(Warp, AnStMapHasWindows) {
     ASSERT_EQ(
         run("oiiotool 'city.exr.lens?lens=3de4:k1=-0.15&output=stmap&size=all&mode=distort' -o more.exr "
-            "'city.exr.lens?lens=3de4:k1=-0.15&output=stmap' -o st.exr --cut 100x60+40+30 -o none.exr")
+            "'city.exr.lens?lens=3de4:k1=-0.15&output=stmap' -o all.exr --cut 100x60+40+30 -o none.exr")
             .status,
         0);
     const ImageSpec more = read("more.exr").spec();
@@ -176,10 +176,10 @@ TEST_F(Warp, AnStMapHasWindows) {
     EXPECT_EQ(drawn.roi_full(), lens.roi_full());
     EXPECT_LT(OIIO::ImageBufAlgo::compare(drawn, lens, 1e-3f, 1e-3f).maxerror, 1e-3);
     // A cropped one.
-    OIIO::ImageBuf crop = OIIO::ImageBufAlgo::crop(read("st.exr"), OIIO::ROI(40, 140, 30, 90));
+    OIIO::ImageBuf crop = OIIO::ImageBufAlgo::crop(read("all.exr"), OIIO::ROI(40, 140, 30, 90));
     write_image(crop, "part.exr");
     const OIIO::ImageBuf part = read("city.exr.warp?mesh=part.exr"),
-                         whole = read("city.exr.warp?mesh=st.exr");
+                         whole = read("city.exr.warp?mesh=all.exr");
     EXPECT_EQ(part.roi(), OIIO::ROI(40, 140, 30, 90, 0, 1, 0, 3));
     EXPECT_EQ(part.roi_full(), whole.roi_full());
     for (int y = 32; y < 88; ++y)
