@@ -53,6 +53,7 @@
 #include "anamorph/deform/deformation.h"
 #include "support.h"
 
+namespace test_deform {
 namespace {
 
 using anamorph::Deformation;
@@ -1832,3 +1833,5 @@ TEST(VtkDeformDepth, TheFrameOfTextureCoordinatesTouchesTheDeformedSurface) {
     filter->Update();
     EXPECT_EQ(filter->GetSelectedFrame()[3], 0);
 }
+
+}  // namespace test_deform

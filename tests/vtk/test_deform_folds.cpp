@@ -25,6 +25,7 @@
 
 #include "support.h"
 
+namespace test_deform_folds {
 namespace {
 
 using Real = long double;
@@ -300,3 +301,4 @@ TEST(VtkDeformImage, FoldsBackgroundsAndBadInput) {
 }
 
 }  // namespace
+}  // namespace test_deform_folds

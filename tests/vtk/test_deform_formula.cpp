@@ -27,6 +27,7 @@
 #include "anamorph/deform/deformation.h"
 #include "support.h"
 
+namespace test_deform_formula {
 namespace {
 
 using anamorph::Deformation;
@@ -523,3 +524,5 @@ TEST(VtkDeformFormula, ProgressRisesAndItCanBeStopped) {
     filter->Update();
     EXPECT_EQ(all_of(filter), expected);
 }
+
+}  // namespace test_deform_formula

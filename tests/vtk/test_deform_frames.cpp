@@ -22,6 +22,7 @@
 
 #include "support.h"
 
+namespace test_deform_frames {
 namespace {
 
 glm::dvec3 point(vtkPolyData* mesh, vtkIdType i) {
@@ -192,3 +193,4 @@ TEST(VtkDeformFrames, WhatMakesNoSenseIsRefused) {
 }
 
 }  // namespace
+}  // namespace test_deform_frames

@@ -20,6 +20,7 @@
 
 #include "support.h"
 
+namespace test_deform_transform {
 namespace {
 
 using testing::HasSubstr;
@@ -234,3 +235,5 @@ TEST(VtkDeformTransform, ReslicesImages) {
     transform->TransformPoint(middle, q);
     EXPECT_NEAR(q[0], 32, 1e-12);
 }
+
+}  // namespace test_deform_transform

@@ -31,6 +31,7 @@
 #include "anamorph/surface/surface.h"
 #include "support.h"
 
+namespace test_drape {
 namespace {
 
 using testing::HasSubstr;
@@ -1296,3 +1297,4 @@ TEST(VtkDrape, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_drape

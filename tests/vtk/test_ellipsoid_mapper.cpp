@@ -15,6 +15,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_ellipsoid_mapper {
 namespace {
 
 using testing::HasSubstr;
@@ -178,3 +179,4 @@ TEST(VtkEllipsoidMapper, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_ellipsoid_mapper

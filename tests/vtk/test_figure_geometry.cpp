@@ -22,6 +22,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_figure_geometry {
 namespace {
 
 using testing::ElementsAre;
@@ -427,3 +428,4 @@ TEST(VtkFigureGeometry, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_figure_geometry

@@ -20,6 +20,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_figure_image {
 namespace {
 
 using testing::HasSubstr;
@@ -611,3 +612,4 @@ TEST(VtkFigureImage, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_figure_image

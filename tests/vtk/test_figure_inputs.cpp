@@ -16,6 +16,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_figure_inputs {
 namespace {
 
 template <class Filter>
@@ -111,3 +112,4 @@ TYPED_TEST(VtkFigureInput, TheInputIsLeftAsItIs) {
 }
 
 }  // namespace
+}  // namespace test_figure_inputs

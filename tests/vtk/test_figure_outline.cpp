@@ -15,6 +15,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_figure_outline {
 namespace {
 
 using testing::ElementsAre;
@@ -291,3 +292,4 @@ TEST(VtkFigureOutline, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_figure_outline

@@ -19,6 +19,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_figure_reader {
 namespace {
 
 using Executive = vtkStreamingDemandDrivenPipeline;
@@ -320,3 +321,4 @@ TEST(VtkFigureReader, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_figure_reader

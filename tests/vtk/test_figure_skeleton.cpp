@@ -15,6 +15,7 @@
 #include "figure_support.h"
 #include "support.h"
 
+namespace test_figure_skeleton {
 namespace {
 
 using testing::ElementsAre;
@@ -162,3 +163,4 @@ TEST(VtkFigureSkeleton, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_figure_skeleton

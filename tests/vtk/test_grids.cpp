@@ -41,6 +41,7 @@
 
 #include "support.h"
 
+namespace test_grids {
 namespace {
 
 using testing::HasSubstr;
@@ -448,3 +449,5 @@ TEST(VtkGrids, AbortEmptiesTheOutput) {
     EXPECT_EQ(errors.text(), "");
     EXPECT_EQ(grid_of(filter)->GetNumberOfPoints(), 0);
 }
+
+}  // namespace test_grids

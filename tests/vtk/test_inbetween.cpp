@@ -37,6 +37,7 @@
 #include "anamorph/deform/key_frames.h"
 #include "support.h"
 
+namespace test_inbetween {
 namespace {
 
 using Executive = vtkStreamingDemandDrivenPipeline;
@@ -1089,3 +1090,4 @@ TEST(VtkInbetween, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_inbetween

@@ -11,6 +11,7 @@
 
 #include "support.h"
 
+namespace test_inputs {
 namespace {
 
 using testing::HasSubstr;
@@ -39,3 +40,4 @@ TEST(VtkInputs, WhatIsNotConnectedIsSaidInOurWords) {
 }
 
 }  // namespace
+}  // namespace test_inputs

@@ -39,6 +39,7 @@
 
 #include "support.h"
 
+namespace test_panorama_projection {
 namespace {
 
 using testing::HasSubstr;
@@ -627,3 +628,4 @@ TEST(VtkPanoramaProjection, WithABudgetItIsCoarserAndSaysSo) {
 }
 
 }  // namespace
+}  // namespace test_panorama_projection

@@ -13,6 +13,7 @@
 
 #include "support.h"
 
+namespace test_panorama_view {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -160,3 +161,4 @@ TEST(VtkPanoramaView, SaysWhatIsWrong) {
 }
 
 }  // namespace
+}  // namespace test_panorama_view

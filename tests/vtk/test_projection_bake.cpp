@@ -22,6 +22,7 @@
 
 #include "support.h"
 
+namespace test_projection_bake {
 namespace {
 
 using testing::HasSubstr;
@@ -291,3 +292,4 @@ TEST(VtkProjectionBake, CountsModificationsExecutesOnceAndPrints) {
 }
 
 }  // namespace
+}  // namespace test_projection_bake

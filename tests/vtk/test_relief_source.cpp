@@ -32,6 +32,7 @@
 
 #include "support.h"
 
+namespace test_relief_source {
 namespace {
 
 using Executive = vtkStreamingDemandDrivenPipeline;
@@ -566,3 +567,4 @@ TEST(VtkRelief, FactoriesMayOverrideIt) {
 }
 
 }  // namespace
+}  // namespace test_relief_source
