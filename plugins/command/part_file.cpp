@@ -77,10 +77,9 @@ struct PartHead {
 /// A manifest that was read.
 struct Manifest {
     PartHead head;
-    std::size_t head_bytes = 0;
     std::int64_t begin = 0, end = 0;   ///< tiles of the part
     std::vector<PictureHash> written;  ///< hashes of those that are there
-    std::size_t line_bytes = 0;        ///< up to the end of the last whole line
+    bool ends_whole = false;           ///< with a whole line
 };
 
 class ManifestReader {
@@ -102,16 +101,14 @@ class ManifestReader {
         m.end = m.head.share.end(tiles.count());
         if (after("tiles ") != std::to_string(m.end - m.begin))
             refuse("it has another number of tiles than its part");
-        m.head_bytes = m.line_bytes = m_at;
         while (m_text.find('\n', m_at) != std::string::npos) {
-            std::istringstream tile(line());
-            std::int64_t i = -1;
-            std::string digits;
-            if (!(tile >> i >> digits) || i != m.begin + std::ssize(m.written) || i >= m.end)
-                refuse("its tiles do not follow each other");
-            m.written.push_back(hash_from_digits(digits, m_file + ": the hash of tile " + std::to_string(i)));
-            m.line_bytes = m_at;
+            const std::int64_t i = m.begin + std::ssize(m.written);
+            const std::string tile = line(), number = std::to_string(i) + " ";
+            if (!tile.starts_with(number) || i >= m.end) refuse("its tiles do not follow each other");
+            m.written.push_back(hash_from_digits(tile.substr(number.size()),
+                                                 m_file + ": the hash of tile " + std::to_string(i)));
         }
+        m.ends_whole = m_at == m_text.size();
         return m;
     }
 
@@ -269,6 +266,30 @@ ImageSpec single_spec(PictureReader& picture, const std::string& recipe) {
     return picture.spec(0);
 }
 
+/// Why a file could not be written, where OpenImageIO has no word for it.
+std::string why_cut_off(const std::string& file) {
+    const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+    constexpr std::uintmax_t kNext = 1 << 20;
+    std::error_code unknown;
+    const std::filesystem::space_info space = std::filesystem::space(folder, unknown);
+    return !unknown && space.available < kNext ? std::strerror(ENOSPC)
+                                               : "it cannot be written as far as it goes";
+}
+
+std::string why_not(const OIIO::ImageOutput& out, const std::string& file) {
+    const std::string why = out.geterror();
+    return why.empty() ? why_cut_off(file) : why;
+}
+
+/// Is the last row in a file? OpenImageIO's writer of PNG does not see that it is cut off.
+bool has_last_row(const std::string& path, const ImageSpec& spec) {
+    const std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::open(path);
+    if (!file) return !OIIO::ImageInput::create(path);  // not all that is written can be read
+    std::vector<std::byte> row(file->spec().scanline_bytes(true));
+    return file->spec().height == spec.height &&
+           file->read_native_scanline(0, 0, file->spec().y + spec.height - 1, 0, row.data());
+}
+
 /// Writes a picture whose rows of tiles `rows` makes, one after the other, under another name until it is whole.
 void write_picture(const ImageSpec& picture, const std::string& output,
                    const std::function<void(std::int64_t row, std::vector<std::byte>& pixels)>& rows) {
@@ -288,9 +309,10 @@ void write_picture(const ImageSpec& picture, const std::string& output,
         if (!out->write_scanlines(spec.y + y, spec.y + end, 0,
                                   spec.channelformats.empty() ? spec.format : OIIO::TypeDesc(),
                                   pixels.data()))
-            throw Error(printable(output) + ": " + out->geterror());
+            throw Error(printable(output) + ": " + why_not(*out, output));
     }
-    if (!out->close()) throw Error(printable(output) + ": " + out->geterror());
+    if (!out->close()) throw Error(printable(output) + ": " + why_not(*out, output));
+    if (!has_last_row(file.path(), spec)) throw Error(printable(output) + ": " + why_cut_off(output));
     file.close();
 }
 
@@ -391,6 +413,7 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
         if (std::ssize(m.written) != m.end - m.begin)
             throw Error(name + " is not finished: it has " + std::to_string(m.written.size()) + " of " +
                         std::to_string(m.end - m.begin) + " tiles");
+        if (!m.ends_whole) throw Error(name + " is no part of a picture: something follows its last tile");
     }
     if (static_cast<int>(order.size()) != first.head.share.count)
         throw Error("part " + std::to_string(order.size() + 1) + " of " +

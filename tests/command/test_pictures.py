@@ -201,10 +201,21 @@ class Pictures(unittest.TestCase):
         self.refused("is not finished", "join", "p1", "p2", "p3")
         for broken in ("", "x", text[:60], text.replace("part 2 3", "part 3 2"), text.replace("part 2 3", "part 2 999999999"),
                        text.replace("spec ", "spec 9"), text.replace("\ntiles 4", "\ntiles 5"), text[:-33] + "z" + text[-32:],
-                       text + "4 " + 32 * "0" + "\n", re.sub("<width>[0-9]*", "<width>-5", text),
+                       text + "4 " + 32 * "0" + "\n", text + "4", text[:-1] + " x\n", re.sub("<width>[0-9]*", "<width>-5", text),
                        re.sub("<width>[0-9]*", "<width>2147483647", text), re.sub("<nchannels>[0-9]*", "<nchannels>0", text)):
             manifest.write_text(broken)
             self.refused("p2", "join", "p1", "p2", "p3")
+
+    def test_says_why_a_file_is_cut_off(self):
+        def with_little_room():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (50000, 50000))
+
+        for name in ("out.tif", "out.exr", "out.png", "out.ppm"):
+            status, out, error = self.run_program("draw", "sky.pano", "-o", name, preexec_fn=with_little_room)
+            self.assertEqual((status, out), (1, ""), name)
+            self.assertRegex(error.splitlines()[-1], rf"^anamorph: {name}: .*[a-z]{{4}}")  # libpng speaks before
+            self.assertFalse((self.folder / name).exists())
 
     def test_says_where_a_program_is_missing(self):
         alone = shutil.copy(PROGRAM, self.folder)
