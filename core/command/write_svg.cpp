@@ -11,11 +11,15 @@ namespace anamorph::command {
 using namespace figure;
 namespace {
 
-/// Appends four decimals at most, with a point whatever the locale.
+/// Appends four decimals at most, with a point whatever the locale; of numbers that have none, all digits.
 void add(std::string& text, double value) {
     constexpr long long kUnits = 10000;
-    const long long units = std::llround(value * kUnits), size = std::llabs(units);
     char digits[32];
+    if (!(std::fabs(value) < 1e14)) {
+        text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+        return;
+    }
+    const long long units = std::llround(value * kUnits), size = std::llabs(units);
     char* end = std::to_chars(digits, digits + sizeof digits, size / kUnits).ptr;
     if (long long rest = size % kUnits; rest > 0) {
         *end++ = '.';

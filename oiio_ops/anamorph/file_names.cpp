@@ -54,8 +54,9 @@ std::string file_state(const std::string& name) {
     struct stat s {};
     std::string state;
     if (::stat(name.c_str(), &s) != 0) return state;
-    for (const auto number : {std::int64_t(s.st_ino), std::int64_t(s.st_size), std::int64_t(s.st_mtim.tv_sec),
-                              std::int64_t(s.st_mtim.tv_nsec)})
+    for (const auto number :
+         {std::int64_t(s.st_ino), std::int64_t(s.st_size), std::int64_t(s.st_mtim.tv_sec),
+          std::int64_t(s.st_mtim.tv_nsec), std::int64_t(s.st_ctim.tv_sec), std::int64_t(s.st_ctim.tv_nsec)})
         state += std::to_string(number) + " ";
     return state;
 }

@@ -384,6 +384,13 @@ class Pictures(Case):
         self.assertEqual(sorted(shapes["line"]), [(300, 450), (300, 550)])
         self.assertGreater(len(shapes["body"]), 8)
 
+    def test_numbers_of_any_size_are_numbers(self):
+        huge = scene(("ball", (10**21, 100, 100), (500, 500, 500)))
+        for style in ("boxes", "cylinders"):
+            for line in self.svg(huge, "--outlines=" + style, "--size=500").iter(SVG + "path"):
+                numbers = re.split("[MLZ ]+", line.get("d").strip("MZ"))
+                self.assertTrue(all(math.isfinite(float(n)) for n in numbers), line.get("d"))
+
     def test_fewer_lines_than_outlines(self):
         ball = scene(("ball", (101, 100, 100), (500, 500, 500)))
         points = {}
@@ -912,7 +919,7 @@ class BadInput(Case):
                 (["png", WALKER, "--viewport=.5,.5,.5,0"], "the half-axes, from 1e-04 to 10"),
                 (["film", WALKER, "--viewport=.5,.5,.5,.5", "-o", "x.png"], "--style outline and stick"),
                 (["svg", WALKER, "--outlines=men"], "--outlines"), (["svg", WALKER, "--simple-tol=0"], "--simple-tol"),
-                (["svg", WALKER, "--simple-tol=nan"], "--simple-tol"),
+                (["svg", WALKER, "--simple-tol=nan"], "--simple-tol"), (["svg", WALKER, "--simple-tol=1e7"], "--simple-tol"),
                 (["svg", WALKER, "--nothing"], "--nothing")):
             self.assertIn(said, self.error(*options), options)
 

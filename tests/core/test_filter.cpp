@@ -218,6 +218,45 @@ TEST(PointSampler, PointsFarAwayOrNoPointsAreSafe) {
     }
 }
 
+TEST(PointSampler, FootprintsOverAndBesideTheEdgeAreTheMeanOfTheirTaps) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
+        Picture picture(flat(), 1, PixelType::float32, wrap);
+        picture.fill([](double x, double y, int) { return 1 + std::sin(13 * x + 7 * y); });
+        const FootprintChooser chooser(picture.source);
+        PointSampler sampler(picture.source, picture.border);
+        int beside = 0, over = 0;
+        for (const double step : {1.0, 3.0, 9.0, 40.0, 1e4})
+            for (const double slant : {0.0, 0.3})
+                for (const double x : {20.3, -2.1, 55.0, 400.0, -3e4, kInfinity, double(kNan)})
+                    for (const double y : {15.2, 31.7, -90.0}) {
+                        SCOPED_TRACE(::testing::Message() << static_cast<int>(wrap) << " step " << step
+                                                          << " slant " << slant << " at " << x << ", " << y);
+                        const Jacobian jacobian{step, slant * step, -slant * step, step};
+                        const Footprint footprint = chooser(jacobian);
+                        float found = -7;
+                        ASSERT_TRUE(sampler.sample(footprint, jacobian, 0, x, y, &found));
+                        const TapOffsets offset(footprint, jacobian, {1, 1});
+                        double sum = 0;
+                        for (int j = 0; j < footprint.taps_b; ++j)
+                            for (int i = 0; i < footprint.taps_a; ++i) {
+                                const Point<double> tap = offset(i, j);
+                                sum += double(picture.sample(Filter::bilinear, x + tap.x, y + tap.y)[0]);
+                            }
+                        ASSERT_EQ(found, static_cast<float>(sum / (footprint.taps_a * footprint.taps_b)));
+                        beside += found == 0;
+                        over += found != 0;
+                    }
+        EXPECT_GT(over, 40);
+        if (wrap == Wrap::automatic || wrap == Wrap::black) {
+            EXPECT_GT(beside, 40);
+        }
+        float pixel = -7;
+        for (const double bad : {kInfinity, double(kNan)})
+            EXPECT_TRUE(sampler.sample(Filter::antialias, chooser, {bad, 0, 0, 1}, 0, 5, 5, &pixel));
+    }
+}
+
 TEST(PointSampler, UnassociatedAlphaWeighsColour) {
     Picture picture(flat(), 2, PixelType::float32, Wrap::automatic, 1);
     // Bright colour under zero alpha must not bleed.

@@ -132,6 +132,8 @@ class Clamp(unittest.TestCase):
             self.assertFalse(np.isfinite(between[20, 29, 0]))
             self.assertTrue(np.isnan(between[20, 29, 1]))
             self.assertTrue(np.isfinite(between[20, :, 2]).all())
+            # Where the sun's weight is negative.
+            self.assertGreaterEqual(between[:, :, 0].min(), pixels[:, :, 0].min())
             self.assertLessEqual(between[:, :, 2].max(), 1000)
 
     def test_data_too(self):

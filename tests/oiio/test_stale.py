@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A source that is rewritten is seen by the next who opens the recipe; how Python opens one anew."""
+import os
 import unittest
 
 import numpy as np
@@ -37,6 +38,15 @@ class Stale(unittest.TestCase):
                 with self.subTest(recipe, value=value):
                     pixels = oiio.ImageInput.open(recipe).read_image("float")
                     self.assertEqual(pixels[24, 32, 0], value)
+
+    def test_a_time_that_was_set_back_hides_nothing(self):
+        for recipe in RECIPES:
+            write(0.25)
+            before = os.stat("plate.exr")
+            self.assertEqual(oiio.ImageInput.open(recipe).read_image("float")[24, 32, 0], 0.25)
+            write(0.75)
+            os.utime("plate.exr", ns=(before.st_atime_ns, before.st_mtime_ns))
+            self.assertEqual(oiio.ImageInput.open(recipe).read_image("float")[24, 32, 0], 0.75, recipe)
 
     def test_an_image_with_options_is_opened_anew(self):
         for recipe in RECIPES:

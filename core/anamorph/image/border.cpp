@@ -180,12 +180,20 @@ Box Border::face(int piece, const Size& level) const noexcept {
 }
 
 Box Border::interior(int piece, const SourceLevel& level) const noexcept {
-    const bool is_round = has_rounded_edge(m_chart);
-    if (m_wrap == Wrap::automatic && is_round) return RoundedEdge(m_chart, level.size).middle();
-    const bool has_edges = m_chart.pieces().size() == 1 && !m_chart.closed() && !is_round;
-    if (!has_edges) return face(piece, level.size);
+    if (m_wrap == Wrap::automatic && has_rounded_edge(m_chart))
+        return RoundedEdge(m_chart, level.size).middle();
+    if (!has_edges()) return face(piece, level.size);
     // What is faded toward black belongs to a black border only.
-    return m_wrap == Wrap::black || m_wrap == Wrap::automatic ? level.extent : level.whole;
+    return goes_black() ? level.extent : level.whole;
+}
+
+/// Is the picture one rectangle that does not go on by itself?
+bool Border::has_edges() const noexcept {
+    return m_chart.pieces().size() == 1 && !m_chart.closed() && !has_rounded_edge(m_chart);
+}
+
+bool Border::is_black(const Box& box, const SourceLevel& level) const noexcept {
+    return goes_black() && has_edges() && intersection(box, level.extent).empty();
 }
 
 int Border::turn(const Size& level) const noexcept {

@@ -58,10 +58,15 @@ class Border {
     TexelRun resolve_run(std::int64_t x, std::int64_t y, int piece, const SourceLevel& level,
                          int limit) const noexcept;
 
+    /// Is all that stands in a box of texels certainly black, as it lies beyond the edges?
+    bool is_black(const Box& box, const SourceLevel& level) const noexcept;
+
     /// The number of texels after which the rows of a level's interior repeat; 0 where they do not close on themselves.
     int turn(const Size& level) const noexcept;
 
   private:
+    bool has_edges() const noexcept;
+    bool goes_black() const noexcept { return m_wrap == Wrap::black || m_wrap == Wrap::automatic; }
     Box face(int piece, const Size& level) const noexcept;
 
     Chart m_chart;

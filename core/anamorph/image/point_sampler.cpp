@@ -36,10 +36,7 @@ Box box_at(Filter filter, double x, double y) {
     return {across.first, down.first, across.first + across.count, down.first + down.count};
 }
 
-// More texels than this for each tap take longer to fetch together than by tap.
-constexpr double kMostForTap = 64;
-
-/// The texels that all taps of a footprint read; empty where there are too many. Those in its corners reach farthest.
+/// The texels that all taps of a footprint read; empty where these are no numbers. Those in its corners reach farthest.
 template <class TapAt>
 Box box_of_taps(const Footprint& footprint, const TapAt& tap_at) {
     const int a = footprint.taps_a - 1, b = footprint.taps_b - 1;
@@ -48,10 +45,16 @@ Box box_of_taps(const Footprint& footprint, const TapAt& tap_at) {
         low = {std::min(low.x, corner.x), std::min(low.y, corner.y)};
         high = {std::max(high.x, corner.x), std::max(high.y, corner.y)};
     }
-    const double texels = (high.x - low.x + 3) * (high.y - low.y + 3);
-    if (!(texels <= kMostForTap * footprint.taps_a * footprint.taps_b)) return {};
+    if (!(low.x <= high.x && low.y <= high.y)) return {};
     const Box first = box_at(Filter::bilinear, low.x, low.y), last = box_at(Filter::bilinear, high.x, high.y);
     return {first.x0, first.y0, last.x1, last.y1};
+}
+
+/// Are the texels of all taps quicker fetched together than by tap?
+bool are_close(const Box& all, const Footprint& footprint) {
+    constexpr double kMostForTap = 64;
+    return (double(all.x1) - all.x0) * (double(all.y1) - all.y0) <=
+           kMostForTap * footprint.taps_a * footprint.taps_b;
 }
 
 /// The sums of texels within a window, channel by channel; `texels` has room for four. They are clamped to the range of the
@@ -91,7 +94,7 @@ void weigh(const Window& window, const Taps& across, const Taps& down, bool clam
 
 PointSampler::PointSampler(const Source& source, const Border& border)
     : m_source(source),
-      m_wrap(border.wrap()),
+      m_border(border),
       m_reader(source, border),
       m_tap(static_cast<std::size_t>(source.channels())),
       m_sum(m_tap.size()),
@@ -141,16 +144,25 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
         const Point<double> tap = offset(i, j);
         return Point<double>{x * sx + tap.x, y * sy + tap.y};
     };
-    // Taps that lie close to each other are read from one window.
+    // A footprint may be thousands of texels beside what there is.
+    const SourceLevel level = m_source.level(footprint.level);
     const Box all = box_of_taps(footprint, tap_at);
+    if (all.empty() || m_border.is_black(all, level)) {
+        std::fill_n(pixel, m_sum.size(), 0.0f);
+        return true;
+    }
+    // Taps that lie close to each other are read from one window.
     Window window;
-    const bool at_once = !all.empty();
+    const bool at_once = are_close(all, footprint);
     if (at_once && !m_reader.get(footprint.level, piece, all, window)) return false;
     for (int j = 0; j < footprint.taps_b; ++j)
         for (int i = 0; i < footprint.taps_a; ++i) {
             const Point<double> at = tap_at(i, j);
             if (at_once)
                 sample(Filter::bilinear, window, at.x, at.y, m_tap.data());
+            else if (std::isnan(at.x) || std::isnan(at.y) ||
+                     m_border.is_black(box_at(Filter::bilinear, at.x, at.y), level))
+                continue;
             else if (!sample(Filter::bilinear, footprint.level, piece, at.x, at.y, m_tap.data()))
                 return false;
             for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += static_cast<double>(m_tap[c]);
@@ -181,7 +193,7 @@ bool PointSampler::sample(Filter filter, const FootprintChooser& chooser, const 
 bool PointSampler::mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept {
     if (!m_sums) m_sums = m_source.summed_areas();
     if (!m_sums) return false;
-    return m_sums->mean(x, y, rectangle.x_i, rectangle.y_j, m_wrap, pixel);
+    return m_sums->mean(x, y, rectangle.x_i, rectangle.y_j, m_border.wrap(), pixel);
 }
 
 }  // namespace anamorph

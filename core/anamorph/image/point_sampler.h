@@ -57,7 +57,7 @@ class PointSampler {
     bool mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept;
 
     const Source& m_source;
-    Wrap m_wrap;
+    const Border& m_border;
     const SummedAreas* m_sums = nullptr;
     WindowReader m_reader;
     std::vector<float> m_tap;

@@ -32,9 +32,9 @@ class TapRange {
         m_least = std::min(m_least, tap);
         m_most = std::max(m_most, tap);
     }
-    /// What is not finite stays what it is.
+    /// What is no number stays so. Infinity times a negative weight is cut off as what else overshoots.
     double clamped(double value) const {
-        return std::isfinite(value) ? std::min(std::max(value, m_least), m_most) : value;
+        return std::isnan(value) ? value : std::min(std::max(value, m_least), m_most);
     }
 
   private:

@@ -96,7 +96,7 @@ ParameterTable figure_outline_rows() {
                     "as hold outline_tol; cylinders, with shadow lines, circular arcs, clip and crease, "
                     "nothing hidden (Willmert)"),
         number("outline_tol", "pixels", shortest(figure::kSimpleTolRow.standard), figure::kSimpleTolRow.least,
-               1e6,
+               figure::kSimpleTolRow.most,
                "of outlines=levels and contours: how far what stands for bodies may be from their outlines"),
     };
 }

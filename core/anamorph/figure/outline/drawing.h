@@ -33,7 +33,7 @@ inline constexpr NumberRow kLineWidthRow{"line-width", 1, 0.01, 1000};
 inline constexpr NumberRow kHaloRow{"halo", 0, 0, 1000};
 
 /// How far Fetter's levels, and contours, may be from bodies' outlines, in pixels.
-inline constexpr NumberRow kSimpleTolRow{"simple-tol", 1, 0.001};
+inline constexpr NumberRow kSimpleTolRow{"simple-tol", 1, 0.001, 1e6};
 
 /// How a frame is drawn.
 struct DrawingOptions {
