@@ -50,15 +50,21 @@ void check_file_name(const std::string& key, const std::string& name) {
                     "ANAMORPH_ALLOW_URLS is 1");
 }
 
-std::string file_state(const std::string& name) {
+std::string content_state(const std::string& name) {
     struct stat s {};
     std::string state;
     if (::stat(name.c_str(), &s) != 0) return state;
-    for (const auto number :
-         {std::int64_t(s.st_ino), std::int64_t(s.st_size), std::int64_t(s.st_mtim.tv_sec),
-          std::int64_t(s.st_mtim.tv_nsec), std::int64_t(s.st_ctim.tv_sec), std::int64_t(s.st_ctim.tv_nsec)})
+    for (const auto number : {std::int64_t(s.st_ino), std::int64_t(s.st_size), std::int64_t(s.st_mtim.tv_sec),
+                              std::int64_t(s.st_mtim.tv_nsec)})
         state += std::to_string(number) + " ";
     return state;
+}
+
+std::string file_state(const std::string& name) {
+    struct stat s {};
+    if (::stat(name.c_str(), &s) != 0) return {};
+    return content_state(name) + std::to_string(s.st_ctim.tv_sec) + " " + std::to_string(s.st_ctim.tv_nsec) +
+           " ";
 }
 
 }  // namespace anamorph

@@ -13,7 +13,9 @@ namespace anamorph {
 void check_file_name(const std::string& key, const std::string& name);
 
 /// A text that differs after each change of a file, whether it was written over or replaced; empty where
-/// there is no file.
+/// there is no file. It stays where a file is moved away and back, and where its time is set back.
+std::string content_state(const std::string& name);
+/// The same, which stays in neither case.
 std::string file_state(const std::string& name);
 
 }  // namespace anamorph

@@ -31,7 +31,7 @@ FileRows::FileRows(Opener open, const std::string& file, int subimage, const OII
                    const Pixels& pixels, std::unique_ptr<OIIO::ImageInput> opened)
     : m_open(std::move(open)),
       m_file(file),
-      m_state(file_state(file)),
+      m_state(content_state(file)),
       m_subimage(subimage),
       m_spec(spec),
       m_format(pixels.format),
@@ -82,7 +82,7 @@ void FileRows::decode(int first, int end) {
     if (!input) throw Error(OIIO::geterror());
     const bool is_there = input->seek_subimage(m_subimage, 0);
     const OIIO::ImageSpec& spec = input->spec();
-    const std::string state = file_state(m_file);
+    const std::string state = content_state(m_file);
     if (!is_there || spec.width != m_spec.width || spec.height != m_spec.height ||
         spec.nchannels != m_spec.nchannels || spec.tile_height != m_spec.tile_height ||
         (!state.empty() && state != m_state))
