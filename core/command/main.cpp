@@ -97,6 +97,22 @@ CLI::Validator number_of(const NumberRow& row) {
         "");
 }
 
+/// Takes a word for what it stands for.
+template <class Value>
+CLI::Validator one_of(const std::map<std::string, Value>& words) {
+    return CLI::Validator(
+        [words](std::string& text) -> std::string {
+            if (const auto found = words.find(text); found != words.end()) {
+                text = std::to_string(static_cast<int>(found->second));
+                return {};
+            }
+            std::string all;
+            for (const auto& [word, value] : words) all += (all.empty() ? "" : ", ") + word;
+            return "\"" + printable(text) + "\": must be one of " + all;
+        },
+        "");
+}
+
 CLI::Validator frame_range() {
     return CLI::Validator(
         [](std::string& text) -> std::string {
@@ -194,7 +210,7 @@ class Command {
         sub->add_option("--dialect", m_settings.source.dialect,
                         "classic: as the programs of 2003 ran scripts, but abut and touch end in exact "
                         "contact; strict: as the language is documented")
-            ->transform(CLI::CheckedTransformer(dialects))
+            ->transform(one_of(dialects))
             ->option_text("classic|strict [classic]");
         sub->add_option("--library", m_settings.source.libraries,
                         "A file of figures without stop, included ahead of the script; may be repeated")
@@ -269,7 +285,7 @@ class Command {
         static const std::map<std::string, Characters> characters{{"braille", Characters::braille},
                                                                   {"ascii", Characters::ascii}};
         sub->add_option("--characters", m_settings.characters, "Braille are 2 x 4 dots each, ascii 1 x 2")
-            ->transform(CLI::CheckedTransformer(characters))
+            ->transform(one_of(characters))
             ->option_text("braille|ascii [braille]");
     }
 
@@ -281,13 +297,13 @@ class Command {
         static const std::map<std::string, HiddenLines> hidden{
             {"remove", HiddenLines::remove}, {"dash", HiddenLines::dash}, {"draw", HiddenLines::draw}};
         sub->add_option("--hidden", d.hidden, "What becomes of hidden lines; draw: bodies are transparent")
-            ->transform(CLI::CheckedTransformer(hidden))
+            ->transform(one_of(hidden))
             ->option_text("remove|dash|draw [remove]");
         static const std::map<std::string, Sticks> sticks{
             {"none", Sticks::none}, {"axes", Sticks::axes}, {"joints", Sticks::joints}};
         sub->add_option("--sticks", d.sticks,
                         "Instead of outlines: the longest axis of each body, or lines from joint to joint")
-            ->transform(CLI::CheckedTransformer(sticks))
+            ->transform(one_of(sticks))
             ->option_text("none|axes|joints [none]");
         static const std::map<std::string, OutlineStyle> styles(std::begin(kOutlineStyles),
                                                                 std::end(kOutlineStyles));
@@ -295,7 +311,7 @@ class Command {
                "--outlines", d.style,
                "Instead of outlines: each figure as a dot, sticks, boxes or contours, the first that is "
                "within --simple-tol of these (Fetter); boxes; contours; elliptic cylinders (Willmert)")
-            ->transform(CLI::CheckedTransformer(styles))
+            ->transform(one_of(styles))
             ->option_text("limbs|levels|boxes|contours|cylinders [limbs]");
         add_number(sub, "--simple-tol", d.simple_tol, kSimpleTolRow,
                    "How far levels and contours may be from outlines, in pixels");
@@ -371,13 +387,13 @@ class Command {
                "--style", m_settings.look.style,
                "What is drawn; textured: shaded, with the pictures (.png, .ppm) beside the script that it "
                "names")
-            ->transform(CLI::CheckedTransformer(styles))
+            ->transform(one_of(styles))
             ->option_text("shaded|textured|outline|stick [shaded]");
         add_viewport(sub, "Of styles outline and stick: ");
         static const std::map<std::string, Lighting> lightings{
             {"rasel", Lighting::rasel}, {"lambert", Lighting::lambert}, {"blinn", Lighting::blinn}};
         sub->add_option("--lighting", m_settings.look.light.lighting, "How bodies are shaded")
-            ->transform(CLI::CheckedTransformer(lightings))
+            ->transform(one_of(lightings))
             ->option_text("rasel|lambert|blinn [rasel]");
         add_look(sub);
         add_perturbation(sub);
@@ -484,7 +500,7 @@ class Command {
             {"summed_area", TextureAverage::summed_area},
             {"antialias", TextureAverage::footprint}};
         sub->add_option("--filter", m_average, "How maps are averaged")
-            ->transform(CLI::CheckedTransformer(averages))
+            ->transform(one_of(averages))
             ->option_text("mrasel|trilinear|summed_area|antialias [mrasel]");
         add_perturbation(sub);
         add_number(sub, "--threads", m_settings.threads, kThreadsRow,

@@ -918,7 +918,7 @@ class BadInput(Case):
                 (["text", WALKER, "--viewport=.5,.5,nan,.5"], "must be x,y,a,b"),
                 (["png", WALKER, "--viewport=.5,.5,.5,0"], "the half-axes, from 1e-04 to 10"),
                 (["film", WALKER, "--viewport=.5,.5,.5,.5", "-o", "x.png"], "--style outline and stick"),
-                (["svg", WALKER, "--outlines=men"], "--outlines"), (["svg", WALKER, "--simple-tol=0"], "--simple-tol"),
+                (["svg", WALKER, "--outlines=men"], '--outlines: "men": must be one of boxes, contours, cylinders, levels, limbs'), (["svg", WALKER, "--simple-tol=0"], "--simple-tol"),
                 (["svg", WALKER, "--simple-tol=nan"], "--simple-tol"), (["svg", WALKER, "--simple-tol=1e7"], "--simple-tol"),
                 (["svg", WALKER, "--nothing"], "--nothing")):
             self.assertIn(said, self.error(*options), options)
