@@ -158,7 +158,7 @@ class Pictures(unittest.TestCase):
 
     def test_what_is_wrong_is_said(self):
         self.refused("--part=0/3: must be I/N", "draw", "sky.pano", "--part", "0/3", "-o", "x")
-        for part in ("4/3", "1", "a/b", "1/3x", "1/99999999999", ""):
+        for part in ("4/3", "1", "1/0", "a/b", "1/3x", "-1/3", "1/99999999999", "1/100001", ""):
             self.refused("must be I/N", "draw", "sky.pano", "--part", part, "-o", "x")
         self.assertFalse((self.folder / "x").exists())
         self.refused("nothing.tif", "hash", "nothing.tif")

@@ -89,9 +89,8 @@ struct PointTerm {
     double center_w = 0, inverse_extent_w = 0;  ///< where has_depth
     double direction[3] = {};                   ///< side_direction() where has_side
     bool has_frame = false;
-    double turn[3][3] =
-        {};  ///< R where has_frame: center, center_w and the inverse extents are then along its columns
-    double box[2] = {};  ///< 1 / how far r = 1 reaches along u and v, where has_frame
+    double turn[3][3] = {};  ///< R where has_frame; the inverse extents are then along its columns
+    double box[2] = {};      ///< 1 / how far r = 1 reaches along u and v, where has_frame
 };
 /// Points: their parameters, and where terms have depth or side their depths w, which may be infinite, and unit normals; w is null
 /// where no term has either.

@@ -111,9 +111,9 @@ Triple<T> side_direction(const Deformation& d) {
     return {v.x / length, v.y / length, v.z / length};
 }
 
-/// R of a bump: what R[j][k] of (u, v, w)[j] its k-th own direction has. Its columns are of length 1 and at right angles, all but for
-/// rounding: each number errs by at most 9 units of 2^-53: sums
-/// of four products by 4 of the sum of their magnitudes, above and below, and the quotient by one.
+/// R of a bump: R[j][k] is how much of (u, v, w)[j] its k-th own direction has. Its columns are of length 1 and at right angles but for
+/// rounding, by which each number errs by at most 9 units of 2^-53: sums of four products, above and below, by 4 of the sum of their
+/// magnitudes, and the quotient by one.
 template <class T>
 std::array<std::array<T, 3>, 3> turn_of(const Deformation& d) {
     // In units of the largest number, which is a power of 2 off at most.
@@ -169,9 +169,8 @@ T influence(const Deformation& d, const T& u, const T& v, const T& w, const T& f
     } else {
         const T x = (u - T(d.center.x)) * T(1 / d.extent.x), y = (v - T(d.center.y)) * T(1 / d.extent.y);
         squared = square(x) + square(y);
+        if (d.has_depth()) squared = squared + square(T((w - T(d.center_w)) * T(1 / d.extent_w)));
     }
-    if (d.has_depth() && !d.has_frame())
-        squared = squared + square(T((w - T(d.center_w)) * T(1 / d.extent_w)));
     const T f = d.kernel == DeformationKernel::gaussian ? gaussian_of(squared) : wendland_of(squared);
     return d.has_side() ? T(f * side_share(facing)) : f;
 }

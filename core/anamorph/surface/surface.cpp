@@ -183,6 +183,22 @@ IntervalJet influence_of(const Deformation& d, const IntervalJet& u, const Inter
     return d.kernel == DeformationKernel::wendland_c2 ? wendland_range(d, u.value(), v.value())
                                                       : gaussian_range(d, u.value(), v.value());
 }
+/// Encloses the kernel of a bump with depth and no frame.
+IntervalJet deep_range(const Deformation& d, const IntervalJet& u, const IntervalJet& v,
+                       const IntervalJet& w) {
+    const IntervalJet z =
+        (w - IntervalJet(Interval(d.center_w))) * IntervalJet(Interval(1) / Interval(d.extent_w));
+    if (d.kernel == DeformationKernel::gaussian) {
+        const GaussianRange deep(z.c[0]);
+        return influence_of(d, u, v) * composed(deep.value, deep.slope, deep.bend, z);
+    }
+    const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
+    IntervalJet x((u.value() - d.center.x) * a), y((v.value() - d.center.y) * b);
+    x.c[1] = a;
+    y.c[2] = b;
+    return wendland_range({x, y, z});
+}
+
 /// The same with depth or side.
 template <class T>
 T influence_of(const Deformation& d, const T& u, const T& v, const T& w, const T& facing) {
@@ -190,21 +206,9 @@ T influence_of(const Deformation& d, const T& u, const T& v, const T& w, const T
 }
 IntervalJet influence_of(const Deformation& d, const IntervalJet& u, const IntervalJet& v,
                          const IntervalJet& w, const IntervalJet& facing) {
-    IntervalJet f = d.has_frame() ? framed_range(d, u, v, w) : influence_of(d, u, v);
-    if (d.has_depth() && !d.has_frame()) {
-        const IntervalJet z =
-            (w - IntervalJet(Interval(d.center_w))) * IntervalJet(Interval(1) / Interval(d.extent_w));
-        if (d.kernel == DeformationKernel::wendland_c2) {
-            const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
-            IntervalJet x((u.value() - d.center.x) * a), y((v.value() - d.center.y) * b);
-            x.c[1] = a;
-            y.c[2] = b;
-            f = wendland_range({x, y, z});
-        } else {
-            const GaussianRange deep(z.c[0]);
-            f = f * composed(deep.value, deep.slope, deep.bend, z);
-        }
-    }
+    const IntervalJet f = d.has_frame()   ? framed_range(d, u, v, w)
+                          : d.has_depth() ? deep_range(d, u, v, w)
+                                          : influence_of(d, u, v);
     return d.has_side() ? f * side_range(facing) : f;
 }
 
@@ -583,8 +587,7 @@ class SummedSurface final : public DrapedSurface {
             if (d.has_frame()) {
                 moved = glm::abs(d.vector) * influence(d, u.lo, v.lo, seen.w.lo, 1.0);
                 lost += glm::abs(d.vector) * lost_in_frame(d, u.lo, v.lo, seen.w);
-            }
-            if (d.has_depth() && !d.has_frame()) {
+            } else if (d.has_depth()) {
                 const double z = (seen.w.lo - d.center_w) / d.extent_w;
                 // Of a side, as if it were all there.
                 const double f = influence(d, u.lo, v.lo, seen.w.lo, 1.0);
