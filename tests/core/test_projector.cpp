@@ -207,6 +207,18 @@ TEST(Projector, CylindersAreReadByKimsFormula) {
     }
 }
 
+TEST(Projector, RefusesALensWhoseSeamCannotBeTurnedAway) {
+    for (const Projection projection : {Projection::cylindrical, Projection::equirectangular})
+        EXPECT_THAT(
+            [&] {
+                Projector(Chart(projection, 600, 300, 200, PixelSpacing::edges, "", {},
+                                LensModel::parse("ptlens:b=0.03")),
+                          {});
+            },
+            testing::ThrowsMessage<Error>(
+                HasSubstr("must be none for " + std::string(name_of(projection)) + " in a scene")));
+}
+
 TEST(Projector, ThrowsTheMiddleAheadTheRightToTheRightAndUpUp) {
     const Projector projector(Chart(Projection::equirectangular, 400, 200));
     Point<double> texel{};

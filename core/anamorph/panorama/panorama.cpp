@@ -254,9 +254,9 @@ Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_
     if (!one_signed(m_source.crease(ray))) return Cover::mixed;
     if (!(sees.lo > 0)) return ends_by_lens(ray, local) ? Cover::partial : Cover::mixed;
     if (m_source.counted() == Counted::azimuth) {
-        // The branch serves less than half a turn, or, where it is not turned, what lies on one side. It must not cross the far side
-        // where the image has an edge.
-        if (!(ray.z.lo > 0) && !(m_source.lens() && one_signed(ray.x))) return Cover::mixed;
+        // A branch that is turned serves less than half a turn. None may cross the far side where the image has an edge; what
+        // crosses it has angles up to both of its ends.
+        if (!m_source.lens() && !(ray.z.lo > 0)) return Cover::mixed;
         const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
         if (!(m_source.closed() && across_seam) &&
             !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
