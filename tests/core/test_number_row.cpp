@@ -14,6 +14,7 @@
 #include "anamorph/figure/outline/level_of_detail.h"
 #include "anamorph/figure/outline/outline.h"
 #include "anamorph/figure/outline/spheres.h"
+#include "anamorph/surface/texture_rows.h"
 
 namespace anamorph::test_number_row {
 using namespace figure;
@@ -32,6 +33,7 @@ TEST(NumberRow, SaysItsRange) {
 TEST(NumberRow, HoldsDefaultsAndFiniteNumbersOnly) {
     std::vector<NumberRow> rows(std::begin(kDeformRows), std::end(kDeformRows));
     rows.insert(rows.end(), std::begin(kFigureRows), std::end(kFigureRows));
+    rows.insert(rows.end(), std::begin(surface::kTextureRows), std::end(surface::kTextureRows));
     for (const NumberRow& row : rows) {
         EXPECT_TRUE(row.holds(row.standard)) << row.name;
         for (const double none : {HUGE_VAL, -HUGE_VAL, std::nan("")})

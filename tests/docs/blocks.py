@@ -107,6 +107,7 @@ OTHERS = [
     Other("python", "deform.SetDepth(", "vtk", "depths"),
     Other("python", "deform.AnchorDeformation(", "vtk", "anchor"),
     Other("python", "import vtkAnamorphDeformImage\n", "vtk", "image"),
+    Other("python", "import vtkAnamorphNonlinearTexture\n", "vtk", "bent"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),

@@ -75,6 +75,17 @@ def check_image():
     assert before.shape == after.shape and 0 < (before != after).sum() < before.size and image.GetNumberOfFailures() == 0
 
 
+def check_bent():
+    surface = vtkPlaneSource()
+    surface.SetResolution(3, 3)
+    surface.Update()
+    coordinates = vtk_to_numpy(surface.GetOutput().GetPointData().GetTCoords())
+    coordinates[:, 0] += 0.1 * np.sin(4 * coordinates[:, 1])
+    bent = run("bent", {"surface": surface})["bent"]
+    assert bent.GetOutput().GetNumberOfCells() > 100
+    assert 0 < bent.GetOutput().GetFieldData().GetArray("anamorph:max_error").GetValue(0) <= 0.25
+
+
 def check_project():
     scene = vtkSphereSource()
     scene.SetRadius(5)
@@ -108,7 +119,8 @@ def check_mapper():
     assert image.GetOutput().GetNumberOfPoints() > 0
 
 
-checks = {"deform": check_deform, "image": check_image, "project": check_project, "shader": check_shader, "mapper": check_mapper}
+checks = {"deform": check_deform, "image": check_image, "bent": check_bent,
+          "project": check_project, "shader": check_shader, "mapper": check_mapper}
 for check in checks.values():
     check()
 assert set(TEXT) == {*checks, "depths", "anchor", "textures"}, TEXT.keys()

@@ -11,6 +11,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/projector/projector_rows.h"
 #include "anamorph/surface/drape_rows.h"
+#include "anamorph/surface/texture_rows.h"
 
 namespace {
 
@@ -47,4 +48,5 @@ int main() {
     print(anamorph::surface::kDrapeParallelScaleRow);
     for (const anamorph::NumberRow& row : anamorph::figure::kFigureRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kProjectorRows) print(row);
+    for (const anamorph::NumberRow& row : anamorph::surface::kTextureRows) print(row);
 }

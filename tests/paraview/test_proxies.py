@@ -35,6 +35,7 @@ ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamor
           ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol",
           ("vtkAnamorphFigureImage", "OutlineTolerance"): "figure_outline_tol",
           ("vtkAnamorphPanoramaProjection", "Tolerance"): "projection_tol",
+          ("vtkAnamorphNonlinearTexture", "Tolerance"): "texture_tol",
           ("vtkAnamorphDrape", "Tolerance"): "drape_tol",
           ("vtkAnamorphDrape", "CameraParallelScale"): "drape_parallel_scale"}
 # Classes whose properties are an operation's parameters, under the same names.
@@ -49,7 +50,7 @@ LEAST_ALONE = {"SelectedDeformation": 0, "BaseIndex": 0, "Resolution": 0}
 NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
             for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}
 # Proxies with fewer numbers than others: of these defaults, ends of ranges, and parameters.
-FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphSplatReader": (0, 0, 1)}
+FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphNonlinearTexture": (3, 3, 3), "AnamorphSplatReader": (0, 0, 1)}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider for what has two ends, of which none can be dragged over so much. Ends beyond this are left to the filter.

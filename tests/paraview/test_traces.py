@@ -201,6 +201,12 @@ def a_panorama_thrown_onto_a_plane():
     apply(projection, Projection=1, PanoramaWidth=600, PanoramaHeight=200, Direction=[1, 0, .2], Occlusion=0)
 
 
+def a_texture_on_few_polygons():
+    ball = Sphere(ThetaResolution=6, PhiResolution=6)
+    textured = AnamorphNonlinearTexture(registrationName="result", Input=TextureMaptoSphere(Input=ball, PreventSeam=1))
+    apply(textured, TextureWidth=300, TextureHeight=200, Tolerance=2)
+
+
 def a_panorama_baked():
     mesh, picture = Plane(), Wavelet(WholeExtent=[0, 63, 0, 31, 0, 0])
     bake = AnamorphProjectionBake(registrationName="result", Input=mesh, Panoramas=[picture])
@@ -220,7 +226,7 @@ def a_view_of_a_panorama():
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row, shapes_of_files,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
-            a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table,
+            a_texture_on_few_polygons, a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table,
             splats_of_a_file]
 
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <vtkAnamorphDeform.h>
 #include <vtkAnamorphDrape.h>
+#include <vtkAnamorphNonlinearTexture.h>
 #include <vtkAnamorphPanoramaProjection.h>
 #include <vtkAnamorphProjectionBake.h>
 #include <vtkNew.h>
@@ -32,6 +33,8 @@ TEST(VtkInputs, WhatIsNotConnectedIsSaidInOurWords) {
                 HasSubstr("the texture is not given: input port 0 must be connected"));
     EXPECT_THAT(said_by(vtkNew<vtkAnamorphPanoramaProjection>()),
                 HasSubstr("the scene is not given: input port 0 must be connected"));
+    EXPECT_THAT(said_by(vtkNew<vtkAnamorphNonlinearTexture>()),
+                HasSubstr("the mesh is not given: input port 0 must be connected"));
     vtkNew<vtkAnamorphProjectionBake> bake;
     EXPECT_THAT(said_by(bake), HasSubstr("the mesh is not given: input port 0 must be connected"));
     vtkNew<vtkPlaneSource> plane;
