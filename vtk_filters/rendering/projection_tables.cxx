@@ -58,7 +58,11 @@ vtkSmartPointer<vtkTextureObject> residual_table(const PreparedPanorama& panoram
                                                  vtkOpenGLRenderWindow* window) {
     std::vector<std::array<float, 2>> all;
     for (const anamorph::ProjectionGroup& group : panorama.groups)
-        all.insert(all.end(), group.residuals.begin(), group.residuals.end());
+        if (!panorama.machine) all.insert(all.end(), group.residuals.begin(), group.residuals.end());
+    // Texels of all their formats are floats.
+    for (const anamorph::machine::BumpTable& table : panorama.bumps)
+        for (const auto& texel : table.texels)
+            all.push_back({static_cast<float>(texel[0]), static_cast<float>(texel[1])});
     const auto texture = new_texture(window);
     const auto columns = static_cast<unsigned>(panorama.field.columns);
     texture->Create2DFromRaw(columns, static_cast<unsigned>(all.size()) / columns, 2, VTK_FLOAT, all.data());

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
+#include <limits>
 #include <numbers>
 
 #include "anamorph/error.h"
+#include "anamorph/machine/machine_text.h"
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/panorama_glsl.h"
 #include "shadow_map.h"
@@ -29,12 +31,12 @@ constexpr double kMostBound = 0.25;
 /// Is a table all there is to read in a group's field of view? Its formula goes on across the seam of a panorama that does not
 /// close, where the texel is none, and behind a picture that does not see all.
 bool is_readable(const anamorph::ProjectionGroup& group, const anamorph::Chart& chart,
-                 const anamorph::GroupOptions& field) {
+                 const anamorph::GroupOptions& field, double most_bound) {
     using anamorph::Interval;
     constexpr int kSquares = 16;
     const bool has_seam = chart.counted() == anamorph::Counted::azimuth && !chart.closed();
     const bool behind = -group.axes[2].z > std::cos(std::atan(field.x_max));
-    if (!(group.bound <= kMostBound) || (has_seam && behind)) return false;
+    if (!(group.bound <= most_bound) || (has_seam && behind)) return false;
     for (int k = 0; k < kSquares * kSquares; ++k) {
         const auto part = [](int at, double most) {
             return Interval(most * (2.0 * at / kSquares - 1), most * (2.0 * (at + 1) / kSquares - 1));
@@ -149,19 +151,46 @@ int anamorphGroup#(vec3 r, out vec2 place) {
 )";
 }
 
+/// What a table says at a place of group g, counted in its texels from the middle of the first.
+std::string table_function(const PreparedPanorama& panorama) {
+    const std::string begin = "vec2 anamorphBump#(int g, vec2 size, vec2 node) {\n";
+    if (!panorama.machine)
+        return begin + R"(  node += 0.5;
+  vec2 table = vec2(node.x, node.y + float(g) * size.y) / (size * vec2(1.0, anamorphCount#));
+  return textureLod(anamorphTable#, table, 0.0).xy;
+}
+)";
+    // As machine::MachineTexture reads, along rows first; in texels of the panorama.
+    std::string scales;
+    for (const anamorph::machine::BumpTable& table : panorama.bumps)
+        scales += (scales.empty() ? "vec2(" : ",\n  vec2(") +
+                  written(table.scale[0] * panorama.chart.width()) + ", " +
+                  written(table.scale[1] * panorama.chart.height()) + ")";
+    const std::string type = "vec2[" + std::to_string(panorama.bumps.size()) + "]";
+    return "const " + type + " anamorphScale# = " + type + "(" + scales + ");\n" + begin +
+           "  float unit = " + written(std::ldexp(1.0, panorama.machine->weight_bits)) + R"(;
+  vec2 first = floor(node), weight = roundEven((node - first) * unit) / unit;
+  ivec2 a = ivec2(first), b = min(a + 1, ivec2(size) - 1), row = ivec2(0, g * int(size.y));
+  vec2 upper = mix(texelFetch(anamorphTable#, a + row, 0).xy, texelFetch(anamorphTable#, ivec2(b.x, a.y) + row, 0).xy, weight.x);
+  vec2 lower = mix(texelFetch(anamorphTable#, ivec2(a.x, b.y) + row, 0).xy, texelFetch(anamorphTable#, b + row, 0).xy, weight.x);
+  return mix(upper, lower, weight.y) * anamorphScale#[g];
+}
+)";
+}
+
 /// Kim 2003, 4.4.1: the linear part, perturbed by the table.
 std::string residual_function(const PreparedPanorama& panorama) {
     const std::string size =
         "vec2(" + written(panorama.field.columns) + ", " + written(panorama.field.rows) + ")";
     const std::string right =
         panorama.chart.closed() ? "" : "at.x >= 0.0 && at.x <= " + written(panorama.chart.width()) + " && ";
-    return matrices("anamorphLinear#", panorama, [](const auto& group) { return group.linear; }) + R"(
+    return table_function(panorama) +
+           matrices("anamorphLinear#", panorama, [](const auto& group) { return group.linear; }) + R"(
 vec2 anamorphTexel#(int g, vec3 r) {
   vec3 p = r * anamorphAxes#[g], linear = anamorphLinear#[g] * r;
   vec2 size = )" +
-           size + R"(, node = clamp(p.xy / p.z / anamorphField# * 0.5 + 0.5, 0.0, 1.0) * (size - 1.0) + 0.5;
-  vec2 table = vec2(node.x, node.y + float(g) * size.y) / (size * vec2(1.0, anamorphCount#));
-  return linear.xy / linear.z + textureLod(anamorphTable#, table, 0.0).xy;
+           size + R"(, node = clamp(p.xy / p.z / anamorphField# * 0.5 + 0.5, 0.0, 1.0) * (size - 1.0);
+  return linear.xy / linear.z + anamorphBump#(g, size, node);
 }
 )" + kBegin +
            R"(
@@ -274,6 +303,7 @@ ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphPro
     if (projector.GetOccluders()) thrown.shadow_size = projector.GetShadowSize();
     thrown.mode = shader.GetMode();
     if (thrown.mode == Shader::DIRECT) return thrown;
+    if (thrown.mode == Shader::RESIDUAL) thrown.machine = shader.GetMachine();
     thrown.directions = shader.GetNumberOfDirections();
     thrown.vertical_reach = shader.GetVerticalReach();
     (thrown.mode == Shader::RESIDUAL ? thrown.table_size : thrown.plane_size) =
@@ -295,24 +325,51 @@ PreparedPanorama::PreparedPanorama(const ThrownPanorama& panorama)
     const bool residual = thrown.mode == Shader::RESIDUAL;
     if (residual && chart.pieces().size() > 1)
         throw anamorph::Error("Mode", "residual", "must be direct or multipass for a panorama with faces");
-    // So wide that neighbours overlap by a hair.
-    field.x_max = std::tan(std::numbers::pi / thrown.directions) * (1 + 0x1p-10);
-    field.y_max = thrown.vertical_reach;
-    field.columns = field.rows = residual ? thrown.table_size : 2;
-    groups =
-        anamorph::ProjectionGroups(anamorph::Projector(chart),
-                                   anamorph::ProjectionGroups::level_directions(thrown.directions), field)
-            .groups();
+    if (residual && !thrown.machine.empty()) {
+        machine = anamorph::machine::bump_unit_from_text(thrown.machine);
+        anamorph::machine::check_on_scene(*machine, {panorama.width, panorama.height});
+    }
+    const int count = machine ? machine->planes.count : thrown.directions;
+    // So wide that neighbours overlap by a hair; two face each other, and never meet.
+    field.x_max = count > 2 ? std::tan(std::numbers::pi / count) * (1 + 0x1p-10) : 1;
+    field.y_max = machine ? 1 : thrown.vertical_reach;
+    if (machine && machine->planes.x_max > 0) field.x_max = machine->planes.x_max;
+    if (machine && machine->planes.y_max > 0) field.y_max = machine->planes.y_max;
+    field.columns = field.rows = machine ? machine->size : residual ? thrown.table_size : 2;
+    groups = anamorph::ProjectionGroups(anamorph::Projector(chart),
+                                        anamorph::ProjectionGroups::level_directions(count), field)
+                 .groups();
+    // Of a machine that is what it shows.
+    const double most_bound = machine ? std::numeric_limits<double>::max() : kMostBound;
     if (residual)
-        groups.erase(std::remove_if(groups.begin(), groups.end(),
-                                    [&](const auto& group) { return !is_readable(group, chart, field); }),
-                     groups.end());
+        groups.erase(
+            std::remove_if(groups.begin(), groups.end(),
+                           [&](const auto& group) { return !is_readable(group, chart, field, most_bound); }),
+            groups.end());
+    if (machine && groups.empty())
+        throw anamorph::Error("machine", thrown.machine,
+                              "must have a projection plane that the panorama covers");
+    if (machine) make_bumps();
+}
+
+/// Residuals in texture coordinates, as bump maps have them.
+void PreparedPanorama::make_bumps() {
+    const double width = chart.width(), height = chart.height();
+    for (const anamorph::ProjectionGroup& group : groups) {
+        anamorph::machine::BumpTexels residuals;
+        residuals.reserve(group.residuals.size());
+        for (const auto& r : group.residuals) residuals.push_back({r[0] / width, r[1] / height});
+        bumps.push_back(anamorph::machine::bump_table(residuals, machine->texel, machine->scaled));
+        const auto error =
+            anamorph::machine::reading_error(residuals, bumps.back(), field.columns, machine->weight_bits);
+        bump_error = std::max(bump_error, std::hypot(error[0] * width, error[1] * height));
+    }
 }
 
 double PreparedPanorama::bound() const {
     double most = 0;
     for (const anamorph::ProjectionGroup& group : groups) most = std::max(most, group.bound);
-    return most;
+    return most + bump_error;
 }
 
 ProjectionText projection_text(const PreparedPanoramas& panoramas, const std::vector<bool>& rays, bool hide) {

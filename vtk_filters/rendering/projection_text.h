@@ -3,9 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "anamorph/machine/bump_table.h"
+#include "anamorph/machine/bump_unit.h"
 #include "anamorph/projector/projection_groups.h"
 
 class vtkAnamorphPanoramaProjector;
@@ -18,7 +21,7 @@ struct ThrownPanorama {
     int projection = 0, width = 0, height = 0;
     int components = 4;  ///< components of the texture as it was loaded
     double fov = 0, d = 1, fade = 0;
-    std::string lens;
+    std::string lens, machine;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
     int shadow_size = 0;  ///< 0: nothing is hidden
     double vertical_reach = 1;
@@ -40,11 +43,18 @@ struct PreparedPanorama {
     /// enough.
     std::vector<anamorph::ProjectionGroup> groups;
     anamorph::GroupOptions field;
+    /// The machine of mode residual whose bump maps the tables are, and these, one for each group.
+    std::optional<anamorph::machine::BumpUnit> machine;
+    std::vector<anamorph::machine::BumpTable> bumps;
+    double bump_error = 0;  ///< what bump maps add to the bound of tables, in texels
 
     /// Prepares a panorama. Throws Error.
     explicit PreparedPanorama(const ThrownPanorama& panorama);
     /// The proven bound in texels where residuals are read; of mode residual.
     double bound() const;
+
+  private:
+    void make_bumps();
 };
 using PreparedPanoramas = std::vector<std::shared_ptr<const PreparedPanorama>>;
 

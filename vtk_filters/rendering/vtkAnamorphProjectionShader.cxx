@@ -32,6 +32,7 @@ void vtkAnamorphProjectionShader::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "NumberOfDirections: " << this->NumberOfDirections << "\n"
        << indent << "VerticalReach: " << this->VerticalReach << "\n"
        << indent << "TableSize: " << this->TableSize << "\n"
+       << indent << "Machine: " << (this->Machine.empty() ? "(none)" : this->Machine) << "\n"
        << indent << "PlaneSize: " << this->PlaneSize << "\n"
        << indent << "HideUnpainted: " << this->HideUnpainted << "\n"
        << indent << "Projectors: " << this->Inside->projectors.size() << "\n";
@@ -83,6 +84,13 @@ void vtkAnamorphProjectionShader::SetMode(int mode) {
     if (clamped == this->Mode) return;
     this->Mode = clamped;
     this->AddToAll();
+}
+
+void vtkAnamorphProjectionShader::SetMachine(const char* text) {
+    const std::string machine = text ? text : "";
+    if (machine == this->Machine) return;
+    this->Machine = machine;
+    this->Modified();
 }
 
 double vtkAnamorphProjectionShader::GetResidualBound(vtkActor* actor, int projector) {

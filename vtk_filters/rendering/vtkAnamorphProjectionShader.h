@@ -26,6 +26,7 @@
 #define vtkAnamorphProjectionShader_h
 
 #include <memory>  // for the members
+#include <string>  // for the machine
 
 #include "AnamorphRenderingModule.h"  // for the export macro
 #include "vtkObject.h"
@@ -102,6 +103,20 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     ///@{
     /**
+     * In mode RESIDUAL, the hardware of 2003 whose bump maps the tables are (Kim 2003, 4.4), as docs/machines.md describes it:
+     * embm-2003:projecting=pixel, and what differs from it, such as embm-2003:projecting=pixel,card=geforce4,planes=4,size=64. Texels
+     * have the machine's format and scale, and are read with weights of its bits; it says how many projection planes there are, how
+     * far they go, and how large tables are, in place of NumberOfDirections, VerticalReach and TableSize. One plane lies where the
+     * panorama's middle is, and up to two go to 45 degrees, unless x_max and y_max say otherwise. Every table is read,
+     * whatever its bound, which counts the format and the weights. What a card could not do is refused, and so is what a scene leaves
+     * no choice of. Default: none.
+     */
+    void SetMachine(const char* text);
+    const char* GetMachine() { return this->Machine.c_str(); }
+    ///@}
+
+    ///@{
+    /**
      * The width and height of a projection plane in pixels. Default: 1024.
      */
     vtkSetClampMacro(PlaneSize, int, 16, 8192);
@@ -151,6 +166,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     int Mode = DIRECT, NumberOfDirections = 4, TableSize = 256, PlaneSize = 1024;
     double VerticalReach = 1;
+    std::string Machine;
     bool HideUnpainted = false;
     std::unique_ptr<Internals> Inside;
 };

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "anamorph/error.h"
+#include "anamorph/machine/bump_table.h"
 #include "anamorph/panorama/panorama_plan.h"
 
 namespace anamorph::machine {
@@ -75,6 +76,26 @@ void check_card(const BumpUnit& unit) {
                     std::string("must be V8U8") + (card->sixteen ? " or V16U16" : "") + with);
 }
 
+void check_on_scene(const BumpUnit& unit, const Size& source) {
+    const auto refuse = [](const char* key, const std::string& value, const std::string& rule) {
+        throw Error(std::string("machine: ") + key, value, rule + " on a scene");
+    };
+    if (unit.projecting != BumpUnit::Projecting::pixel)
+        refuse("projecting", "vertex", "must be pixel, which cards other than geforce3 and radeon can do,");
+    if (unit.size < 2) refuse("size", std::to_string(unit.size), "must be at least 2");
+    if (unit.edge != BumpUnit::Edge::clamp)
+        refuse("edge", "border",
+               "must be clamp, as the outer texels' centres lie on the border of the plane");
+    if (unit.arithmetic != kFloat32)
+        refuse("arithmetic", name_of(unit.arithmetic),
+               "must be float32, in which the graphics card computes,");
+    constexpr auto kAddressBits = static_cast<int>(kBumpAddressRow.standard);
+    if (unit.address_bits != kAddressBits)
+        refuse("address_bits", std::to_string(unit.address_bits),
+               "must be " + std::to_string(kAddressBits) + ", as the graphics card reads the panorama,");
+    check_texture_side(source, unit.texture_side);
+}
+
 NumberFormat texel_of(BumpCard card) {
     const CardFacts* facts = facts_of(card);
     return facts && !facts->sixteen ? kSigned8 : kSigned16;
@@ -116,27 +137,18 @@ void BumpStage::set_corners(const ProjectionPlane& plane) {
 }
 
 void BumpStage::make_bumps(const Chart& source, const ProjectionPlane& plane) {
-    using Texel = MachineTexture<2>::Texel;
     const double first = has_border(m_unit) ? 1 : 0, span = m_unit.size - 2 * first;
     const auto place = [&](int i, double most) { return ((i + 0.5 - first) / span * 2 - 1) * most; };
-    std::vector<Texel> texels;
+    BumpTexels residuals;
     for (int j = 0; j < m_unit.size; ++j)
         for (int i = 0; i < m_unit.size; ++i) {
             const glm::dvec2 r = plane_residual(source, plane, place(i, plane.x_max), place(j, plane.y_max));
-            texels.push_back({r.x, r.y});
+            residuals.push_back({r.x, r.y});
         }
-    for (std::size_t c = 0; c < 2; ++c) {
-        double most = 0;
-        for (const Texel& texel : texels) most = std::max(most, std::fabs(texel[c]));
-        if (m_unit.scaled && m_unit.texel.kind == NumberFormat::Kind::fixed && most > 0)
-            m_scale[c] = most / largest(m_unit.texel);
-    }
-    for (Texel& texel : texels) {
-        bool beyond = false;
-        for (std::size_t c = 0; c < 2; ++c) texel[c] = nearest(m_unit.texel, texel[c] / m_scale[c], beyond);
-        m_saturated += beyond;
-    }
-    m_bumps = std::make_unique<MachineTexture<2>>(m_unit.size, m_unit.weight_bits, std::move(texels));
+    BumpTable table = bump_table(residuals, m_unit.texel, m_unit.scaled);
+    m_scale = table.scale;
+    m_saturated = table.saturated;
+    m_bumps = std::make_unique<MachineTexture<2>>(m_unit.size, m_unit.weight_bits, std::move(table.texels));
 }
 
 /// What a pixel divides: Corner::numbers there.

@@ -61,6 +61,9 @@ struct BumpUnit {
 
 /// Throws Error naming `machine` and the key where a unit's card cannot do what the unit does (4.4.1 and 4.4.3).
 void check_card(const BumpUnit& unit);
+/// Checks that a unit can throw a panorama onto a scene, which is drawn by a graphics card of today with the unit's tables
+/// (vtkAnamorphProjectionShader). Throws Error naming `machine` and the key.
+void check_on_scene(const BumpUnit& unit, const Size& source);
 /// The texels that a card's bump maps have.
 NumberFormat texel_of(BumpCard card);
 /// The name of a card, as users write it.

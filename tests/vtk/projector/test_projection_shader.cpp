@@ -12,6 +12,8 @@
 #include <vtkVersion.h>
 #include <vtkWeakPointer.h>
 
+#include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "anamorph/projector/projection_bake.h"
@@ -737,6 +739,196 @@ TEST(VtkProjectionShader, BadValuesAreSaidOnceAndPaintNothing) {
     EXPECT_EQ(room.picture(), own);
     EXPECT_THAT(errors.texts.back(), HasSubstr("must be a number above 0"));
     EXPECT_EQ(errors.texts.size(), 6);
+}
+
+/// The bump unit of Kim 2003, 4.4, on a full equirectangular panorama, written out in long double: planes across level directions, linear
+/// coordinates by the derivatives in the middle, and what is left in a table of signed numbers of `bits` bits behind the point.
+class WrittenOutUnit {
+  public:
+    WrittenOutUnit(int width, int planes, long double reach, int size, int bits, bool scaled, int weight_bits)
+        : m_width(width),
+          m_planes(planes),
+          m_reach(reach),
+          m_size(size),
+          m_weights(std::ldexp(1.0L, weight_bits)) {
+        const long double unit = std::ldexp(1.0L, bits);
+        std::vector<long double> left[2];
+        for (int j = 0; j < size; ++j)
+            for (int i = 0; i < size; ++i) {
+                const long double x = reach * node(i), y = node(j);
+                left[0].push_back((std::atan(x) - x) / (2 * kPi));
+                left[1].push_back((std::atan(y / std::sqrt(1 + x * x)) - y) / kPi);
+            }
+        for (std::size_t c = 0; c < 2; ++c) {
+            long double most = 0;
+            for (const long double r : left[c]) most = std::max(most, std::fabs(r));
+            const long double scale = scaled ? most / (1 - 1 / unit) : 1;
+            for (const long double r : left[c])
+                m_table[c].push_back(std::clamp(std::nearbyint(r / scale * unit), -unit, unit - 1) / unit *
+                                     scale);
+        }
+    }
+
+    /// The texel that a ray finds; `on_tie`: is a weight so near a tie that float may round it either way?
+    std::array<long double, 2> texel(const Ray<long double>& r, bool& on_tie) const {
+        int best = 0;
+        long double most = -HUGE_VALL;
+        for (int g = 0; g < m_planes; ++g) {
+            const long double a = 2 * kPi * g / m_planes, along = r.x * std::sin(a) + r.z * std::cos(a);
+            if (along > most) most = along, best = g;
+        }
+        const long double a = 2 * kPi * best / m_planes, height = m_width / 2;
+        const long double x = (r.x * std::cos(a) - r.z * std::sin(a)) / most, y = r.y / most;
+        on_tie = false;
+        if (!(most > 0) || std::fabs(x) > m_reach || std::fabs(y) > 1)
+            return {m_width * (0.5L + std::atan2(r.x, r.z) / (2 * kPi)),
+                    height * (0.5L + std::atan2(r.y, std::hypot(r.x, r.z)) / kPi)};
+        return {m_width * (0.5L + (a + x) / (2 * kPi) + read(0, x, y, on_tie)),
+                height * (0.5L + y / kPi + read(1, x, y, on_tie))};
+    }
+
+  private:
+    static constexpr long double kPi = std::numbers::pi_v<long double>;
+
+    long double node(int i) const { return 2.0L * i / (m_size - 1) - 1; }
+    long double read(std::size_t c, long double x, long double y, bool& on_tie) const {
+        const auto split = [&](long double at, int& first) {
+            const long double place = (at + 1) / 2 * (m_size - 1);
+            first = std::min(static_cast<int>(place), m_size - 2);
+            const long double weight = (place - first) * m_weights, rounded = std::nearbyint(weight);
+            on_tie = on_tie || std::fabs(std::fabs(weight - rounded) - 0.5L) < 2e-6L * m_size * m_weights;
+            return rounded / m_weights;
+        };
+        int i = 0, j = 0;
+        const long double s = split(x / m_reach, i), t = split(y, j);
+        const auto at = [&](int a, int b) {
+            return m_table[c][static_cast<std::size_t>((j + b) * m_size + i + a)];
+        };
+        return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
+    }
+
+    int m_width, m_planes;
+    long double m_reach;
+    int m_size;
+    long double m_weights;
+    std::vector<long double> m_table[2];
+};
+
+TEST(VtkProjectionShader, BumpMapsOf2003AreReadAsWrittenOut) {
+    constexpr int kPanorama = 2048;
+    const Chart chart(Projection::equirectangular, kPanorama, kPanorama / 2);
+    const auto texture = texture_of(chart.width(), chart.height(), colour_of_place);
+    texture->InterpolateOff();
+    struct Case {
+        const char* keys;
+        int planes, size, bits;
+        bool scaled;
+        int weight_bits;
+    };
+    double bound_of_8 = 0, bound_of_16 = 0;
+    for (const Case& c :
+         {Case{"planes=4,size=64,texel=V8U8", 4, 64, 7, true, 8},
+          Case{"planes=4,card=geforce4", 4, 256, 7, true, 8},
+          Case{"planes=4,size=64,texel=V16U16,card=radeon8500", 4, 64, 15, true, 8},
+          Case{"planes=1,size=128,texel=V16U16,scaled=false", 1, 128, 15, false, 8},
+          Case{"planes=2,size=32,texel=V8U8,weight_bits=5", 2, 32, 7, true, 5},
+          Case{"planes=1,size=16,texel=V16U16,weight_bits=2,x_max=1,y_max=1", 1, 16, 15, true, 2}}) {
+        SCOPED_TRACE(c.keys);
+        Room room;
+        const auto projector = projector_of(chart, texture, {-0.3, 0.2, 0.1});
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        const Errors errors(shader);
+        shader->AddProjector(projector);
+        shader->HideUnpaintedOn();
+        shader->SetModeToResidual();
+        shader->SetMachine((std::string("embm-2003:projecting=pixel,") + c.keys).c_str());
+        shader->AddTo(room.actor);
+        const long double reach = c.planes > 2 ? 1 + 0x1p-10L : 1;
+        const WrittenOutUnit unit(kPanorama, c.planes, reach, c.size, c.bits, c.scaled, c.weight_bits);
+        const Projector core = core_of(chart, *projector);
+        long double worst = 0, from_formula = 0;
+        int compared = 0, ties = 0;
+        for (const double yaw : {20.0, 140.0, 260.0}) {
+            room.look({yaw, yaw / 4 - 40, 15});
+            const auto picture = room.picture();
+            for (int j = 0; j < Room::kHeight; ++j)
+                for (int i = 0; i < Room::kWidth; ++i) {
+                    const Colour& colour = picture[static_cast<std::size_t>(j * Room::kWidth + i)];
+                    const Ray<long double> ray = room.ray(core, i, j);
+                    bool on_tie = false;
+                    const auto model = unit.texel(ray, on_tie);
+                    if (colour == kNoPlace || model[1] < 1 || model[1] > chart.height() - 1) continue;
+                    ties += on_tie;
+                    ++compared;
+                    const auto place = place_of_colour(colour);
+                    from_formula = std::max(from_formula, least_distance(chart, ray, place));
+                    if (on_tie) continue;
+                    const long double across =
+                        std::fabs(std::remainder(place[0] + 0.5L - model[0], 1.0L * kPanorama));
+                    worst = std::max({worst, across, std::fabs(place[1] + 0.5L - model[1])});
+                }
+        }
+        EXPECT_THAT(errors.texts, testing::IsEmpty());
+        EXPECT_GT(compared, 50000);
+        EXPECT_LT(ties, compared / 2);
+        // Half a texel to its border, and the rounding of float.
+        EXPECT_LE(worst, 0.5L + 0.002L);
+        const double bound = shader->GetResidualBound(room.actor);
+        EXPECT_LE(from_formula, 0.5L + bound + 0.01L);
+        EXPECT_GT(from_formula, 0.5L + 0.25L * bound) << "the bound is no more than four times what is off";
+        if (c.size == 64) (c.bits == 7 ? bound_of_8 : bound_of_16) = bound;
+    }
+    EXPECT_GT(bound_of_8, 3 * bound_of_16);
+}
+
+TEST(VtkProjectionShader, MachinesThatCannotAreRefused) {
+    using testing::HasSubstr;
+    const auto projector = projector_of(Chart(Projection::equirectangular, 100, 50), smooth_texture(100, 50));
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    const Errors errors(shader);
+    Room room;
+    const auto own = room.picture();
+    shader->AddProjector(projector);
+    shader->SetModeToResidual();
+    shader->AddTo(room.actor);
+    for (const auto& [text, said] :
+         {std::pair("embm-2003", "machine: projecting=vertex: must be pixel"),
+          std::pair("embm-2003:card=geforce3", "machine: projecting=vertex: must be pixel"),
+          std::pair("embm-2003:card=geforce3,projecting=pixel", "must be vertex with card=geforce3"),
+          std::pair("embm-2003:card=radeon,projecting=pixel", "must be vertex with card=radeon"),
+          std::pair("embm-2003:card=geforce4,projecting=pixel,texel=V16U16",
+                    "must be V8U8 with card=geforce4"),
+          std::pair("embm-2003:projecting=pixel,size=1", "machine: size=1: must be at least 2"),
+          std::pair("embm-2003:projecting=pixel,edge=border", "machine: edge=border: must be clamp"),
+          std::pair("embm-2003:projecting=pixel,arithmetic=float24",
+                    "machine: arithmetic=float24: must be float32"),
+          std::pair("embm-2003:projecting=pixel,address_bits=4", "machine: address_bits=4: must be 8"),
+          std::pair("embm-2003:projecting=pixel,texture_side=64", "must be at most 64 either way"),
+          std::pair("embm-2003:projecting=pixel,y_max=1000", "must have a projection plane"),
+          std::pair("embm-2003:planes=17", "planes=17"), std::pair("oka-1987", "machine"),
+          std::pair("embm-2003:projecting=pixel,texel=V4U4", "texel")}) {
+        SCOPED_TRACE(text);
+        shader->SetMachine(text);
+        EXPECT_EQ(room.picture(), own);
+        ASSERT_FALSE(errors.texts.empty());
+        EXPECT_THAT(errors.texts.back(), HasSubstr(said));
+        EXPECT_LE(errors.texts.back().size(), 700u);
+    }
+    const auto count = errors.texts.size();
+    shader->SetMachine("embm-2003:projecting=pixel");
+    const vtkMTimeType set = shader->GetMTime();
+    shader->SetMachine("embm-2003:projecting=pixel");
+    EXPECT_EQ(shader->GetMTime(), set);
+    EXPECT_STREQ(shader->GetMachine(), "embm-2003:projecting=pixel");
+    EXPECT_NE(room.picture(), own);
+    EXPECT_EQ(errors.texts.size(), count);
+    // It is of mode residual alone.
+    shader->SetMachine("nothing");
+    shader->SetModeToDirect();
+    EXPECT_NE(room.picture(), own);
+    EXPECT_EQ(errors.texts.size(), count);
+    shader->SetMachine(nullptr);
+    EXPECT_STREQ(shader->GetMachine(), "");
 }
 
 TEST(VtkProjectionShader, AProjectorThatWasNeverTurnedPaintsNothing) {
