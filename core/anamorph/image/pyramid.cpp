@@ -130,11 +130,13 @@ void reduce(const ConstImageView& fine, int corner_x, int corner_y, const std::v
 }  // namespace
 
 struct Pyramid::Level {
-    Level(const SourceLevel& level, PixelType type, int channels)
+    /// `halvings`: of the base, 1 or more.
+    Level(const SourceLevel& level, int halvings, PixelType type, int channels)
         : size(level.size),
           extent(level.extent),
+          tile_height(std::max(kTile >> halvings, kLeastTileHeight)),
           tiles_x((extent.width() + kTile - 1) / kTile),
-          tiles_y((extent.height() + kTile - 1) / kTile),
+          tiles_y((extent.height() + tile_height - 1) / tile_height),
           pages(static_cast<std::size_t>(extent.width()) * static_cast<std::size_t>(extent.height()) *
                 static_cast<std::size_t>(channels * size_of(type))),
           view(packed_view<const std::byte>(pages.data(), type, extent.width(), extent.height(), channels)),
@@ -149,7 +151,7 @@ struct Pyramid::Level {
 
     Size size;
     Box extent;
-    int tiles_x, tiles_y;
+    int tile_height, tiles_x, tiles_y;
     Pages pages;
     ConstImageView view;  ///< of the extent
     std::unique_ptr<std::atomic<bool>[]> ready;
@@ -166,7 +168,8 @@ Pyramid::Pyramid(const Source& base, int columns, int rows) : m_base(base) {
         if (next.width / columns < kLeast || next.height / rows < kLeast) return;
         if (pieces && (size.width % (2 * columns) != 0 || size.height % (2 * rows) != 0)) return;
         finer = {next, texels_over(finer.extent, size, next)};
-        m_made.push_back(std::make_unique<Level>(finer, base.type(), base.channels()));
+        const int halvings = static_cast<int>(m_made.size()) + 1;
+        m_made.push_back(std::make_unique<Level>(finer, halvings, base.type(), base.channels()));
     }
 }
 
@@ -200,7 +203,7 @@ bool Pyramid::prepare(int level, const Box& box) const noexcept try {
     if (box.empty()) return true;
     const Level& to = at(level);
     const Box part = to.in_view(box);
-    for (int ty = part.y0 / kTile; ty <= (part.y1 - 1) / kTile; ++ty)
+    for (int ty = part.y0 / to.tile_height; ty <= (part.y1 - 1) / to.tile_height; ++ty)
         for (int tx = part.x0 / kTile; tx <= (part.x1 - 1) / kTile; ++tx) {
             const std::size_t tile = static_cast<std::size_t>(ty) * static_cast<std::size_t>(to.tiles_x) +
                                      static_cast<std::size_t>(tx);
@@ -208,8 +211,9 @@ bool Pyramid::prepare(int level, const Box& box) const noexcept try {
             if (ready.load(std::memory_order_acquire)) continue;
             const std::lock_guard lock(to.making[tile % to.making.size()]);
             if (ready.load(std::memory_order_relaxed)) continue;
-            const int x = to.extent.x0 + tx * kTile, y = to.extent.y0 + ty * kTile;
-            if (!make_tile(level, intersection(to.extent, {x, y, x + kTile, y + kTile}))) return false;
+            const int x = to.extent.x0 + tx * kTile, y = to.extent.y0 + ty * to.tile_height;
+            const Box tile_box{x, y, x + kTile, y + to.tile_height};
+            if (!make_tile(level, intersection(to.extent, tile_box))) return false;
             ready.store(true, std::memory_order_release);
         }
     return true;

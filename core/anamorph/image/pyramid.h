@@ -27,11 +27,13 @@ TexelSpan span_of_texel(int i, int fine, int coarse) noexcept;
 /// averaging, and is as unassociated in the result. Where the base goes on beyond the edges of its picture, so do
 /// the levels; what their outermost texels have beyond the base's is 0.
 ///
-/// Levels are made in tiles of kTile texels when first read; memory is used for tiles that were. Any order of
+/// Levels are made in tiles when first read, kTile texels wide and as high as kTile rows of the base, or kLeastTileHeight: a file that has
+/// to be decoded row by row is, up to the last row that counts. Memory is used for tiles that were read. Any order of
 /// reading and any number of threads give the same bits.
 class Pyramid final : public Source {
   public:
     static constexpr int kTile = 128;
+    static constexpr int kLeastTileHeight = 4;
     /// The smallest width and height, in texels, of a level but the base, or of its pieces.
     static constexpr int kLeast = 4;
 
