@@ -227,6 +227,8 @@ void ProjectionHook::refresh_text(vtkRenderer* renderer) {
             thrown.shadow_size =
                 std::min(thrown.shadow_size,
                          most_shadow_size(vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow())));
+            thrown.most_rows = vtkTextureObject::GetMaximumTextureSize(
+                vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()));
             const auto at = static_cast<std::size_t>(i);
             const bool known = at < prepared.size() && prepared[at]->thrown == thrown;
             now.push_back(known ? prepared[at] : std::make_shared<const PreparedPanorama>(thrown));

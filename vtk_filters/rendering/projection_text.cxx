@@ -336,6 +336,11 @@ PreparedPanorama::PreparedPanorama(const ThrownPanorama& panorama)
     if (machine && machine->planes.x_max > 0) field.x_max = machine->planes.x_max;
     if (machine && machine->planes.y_max > 0) field.y_max = machine->planes.y_max;
     field.columns = field.rows = machine ? machine->size : residual ? thrown.table_size : 2;
+    // Tables lie one above the other.
+    if (residual && thrown.most_rows > 0 && field.rows > thrown.most_rows / count)
+        throw anamorph::Error(
+            machine ? "machine: size" : "TableSize", std::to_string(field.rows),
+            "times the number of directions must be no more than " + std::to_string(thrown.most_rows));
     groups = anamorph::ProjectionGroups(anamorph::Projector(chart),
                                         anamorph::ProjectionGroups::level_directions(count), field)
                  .groups();

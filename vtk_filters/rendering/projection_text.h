@@ -24,6 +24,7 @@ struct ThrownPanorama {
     std::string lens, machine;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
     int shadow_size = 0;  ///< 0: nothing is hidden
+    int most_rows = 0;    ///< of the window's textures; 0: not known
     double vertical_reach = 1;
 
     bool operator==(const ThrownPanorama&) const = default;

@@ -914,6 +914,17 @@ TEST(VtkProjectionShader, MachinesThatCannotAreRefused) {
         EXPECT_THAT(errors.texts.back(), HasSubstr(said));
         EXPECT_LE(errors.texts.back().size(), 700u);
     }
+    // Before tables are made, which would take minutes.
+    shader->SetMachine("embm-2003:projecting=pixel,size=4096,planes=16");
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_THAT(errors.texts.back(), HasSubstr("machine: size=4096: times the number of directions must be"));
+    shader->SetMachine(nullptr);
+    shader->SetTableSize(4096);
+    shader->SetNumberOfDirections(32);
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_THAT(errors.texts.back(), HasSubstr("TableSize=4096: times the number of directions must be"));
+    shader->SetTableSize(256);
+    shader->SetNumberOfDirections(4);
     const auto count = errors.texts.size();
     shader->SetMachine("embm-2003:projecting=pixel");
     const vtkMTimeType set = shader->GetMTime();
