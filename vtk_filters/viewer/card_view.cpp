@@ -18,6 +18,10 @@
 #include <glm/mat3x3.hpp>
 #include <numbers>
 
+#include "anamorph/number/glsl_number.h"
+#include "anamorph/projector/concentric_glsl.h"
+#include "anamorph/projector/panorama_glsl.h"
+
 namespace anamorph_viewer {
 namespace {
 
@@ -31,6 +35,7 @@ constexpr const char* kTextureImpl = "//VTK::TCoord::Impl";
 constexpr const char* kLast = "//VTK::DepthPeeling::Impl";
 constexpr const char* kPlace = "anamorphPlace";
 constexpr const char* kGain = "anamorphGain";
+constexpr const char* kViewpoint = "anamorphViewpoint";
 
 /// What shown() does, fragment by fragment; a gain of 0 leaves values as they are.
 constexpr const char* kShown = R"(
@@ -74,6 +79,31 @@ std::string reading_code(const anamorph::Chart& chart) {
            "  gl_FragData[0] = anamorphSeen ? vec4(anamorphRead.rgb, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);\n";
 }
 
+/// Of a line of sight the two circles beside it, each by its own texel; the panoramas stand one above the other.
+std::string circles_code(const anamorph::Chart& chart, const anamorph::ConcentricStack& stack) {
+    const auto number = [](double value) { return anamorph::GlslNumber(value).written(); };
+    const double gaps = std::max(stack.circles - 1, 1);
+    return "  vec3 anamorphRay = anamorphPlaceVSOutput.xyz, anamorphSum = vec3(0.0);\n"
+           "  anamorphRay /= max(max(abs(anamorphRay.x), abs(anamorphRay.y)), abs(anamorphRay.z));\n"
+           // Straight up or down there is no horizontal direction.
+           "  if (dot(anamorphRay.xz, anamorphRay.xz) < 1e-12) anamorphRay.x = 1e-6;\n"
+           "  float anamorphCircle = (anamorphSlitOffset(anamorphRay, anamorphViewpoint) + 1.0) / 2.0 * " +
+           number(stack.circles - 1) + ";\n  float anamorphFirst = clamp(floor(anamorphCircle), 0.0, " +
+           number(gaps - 1) + ");\n  float anamorphWeight = clamp(anamorphCircle - anamorphFirst, 0.0, " +
+           number(stack.circles > 1) + ");\n  for (int i = 0; i < " + (stack.circles > 1 ? "2" : "1") +
+           "; ++i) {\n    float circle = anamorphFirst + float(i), radius = " +
+           (stack.circles > 1 ? "2.0 * circle / " + number(gaps) + " - 1.0" : "0.0") +
+           ";\n    vec2 size = vec2(" + number(chart.width()) + ", " + number(chart.height()) +
+           ");\n    vec2 at = anamorphSlitTexel(anamorphRay, anamorphViewpoint, radius * " +
+           number(1 / stack.depth) +
+           ");\n    bool seen = at.y >= 0.0 && at.y <= size.y;\n    at.y = clamp(at.y, 0.5, size.y - 0.5) + "
+           "circle * size.y;\n    at /= size * vec2(1.0, " +
+           number(stack.circles) +
+           ");\n    vec3 column = textureLod(anamorphPicture, vec2(at.x, 1.0 - at.y), 0.0).rgb;\n"
+           "    if (seen) anamorphSum += (i == 0 ? 1.0 - anamorphWeight : anamorphWeight) * column;\n  }\n"
+           "  gl_FragData[0] = vec4(anamorphSum, 1.0);\n";
+}
+
 vtkSmartPointer<vtkImageData> image_of(int width, int height, int channels) {
     const auto image = vtkSmartPointer<vtkImageData>::New();
     image->SetDimensions(width, height, 1);
@@ -86,7 +116,7 @@ vtkSmartPointer<vtkImageData> image_of(int width, int height, int channels) {
 CardView::CardView(const ViewedPanorama& panorama) : CardView(panorama.card_picture(), panorama.is_hdr()) {}
 
 CardView::CardView(const CardPicture& picture, bool hdr)
-    : m_chart(picture.chart), m_held(anamorph::rotation(picture.held)), m_hdr(hdr) {
+    : m_chart(picture.chart), m_held(anamorph::rotation(picture.held)), m_hdr(hdr), m_stack(picture.stack) {
     set_picture(picture);
     m_mapper->SetInputData(m_mesh);
     m_actor->SetMapper(m_mapper);
@@ -104,7 +134,7 @@ CardView::CardView(const CardPicture& picture, bool hdr)
 }
 
 void CardView::set_picture(const CardPicture& picture) {
-    const int width = m_chart.width(), height = m_chart.height();
+    const int width = m_chart.width(), height = m_chart.height() * (m_stack ? m_stack->circles : 1);
     const auto image = image_of(width, height, 3);
     auto* to = static_cast<float*>(image->GetScalarPointer());
     for (int y = height - 1; y >= 0; --y)
@@ -120,14 +150,14 @@ void CardView::set_picture(const CardPicture& picture) {
         texture->SetColorModeToDirectScalars();
         texture->InterpolateOn();
     }
-    m_texture->MipmapOn();
+    m_texture->SetMipmap(!m_stack);  // levels would mix circles
     m_texture->RepeatOn();
     m_residuals->RepeatOff();
     m_residuals->EdgeClampOn();
 }
 
 bool CardView::look(const View& view, const anamorph::Size& size, bool per_vertex, double gain,
-                    vtkRenderer* renderer) {
+                    vtkRenderer* renderer, const glm::dvec2& viewpoint) {
     const glm::dmat3 turn = anamorph::rotation({view.yaw, view.pitch, 0});
     const double across = std::tan(view.fov / 2 * kRadians), down = across * size.height / size.width;
     vtkCamera* camera = renderer->GetActiveCamera();
@@ -142,20 +172,31 @@ bool CardView::look(const View& view, const anamorph::Size& size, bool per_verte
     for (std::size_t k = 0; k < 4; ++k)
         rays[k] =
             turn * glm::dvec3((k == 0 || k == 3 ? -1.01 : 1.01) * across, (k < 2 ? 1.01 : -1.01) * down, 1);
+    set_gain(gain);
+    if (m_stack) {
+        set_rectangle(rays);
+        be_of_circles();
+        const float at[] = {static_cast<float>(viewpoint.x), static_cast<float>(viewpoint.y)};
+        m_actor->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(kViewpoint, at);
+        return false;
+    }
     const bool has_trapezoid = per_vertex && set_trapezoid(rays, turn[2]);
     if (!has_trapezoid) {
         m_bound = 0;
         set_rectangle(rays);
     }
     be_per_vertex(has_trapezoid);
-    set_gain(gain);
     return has_trapezoid;
 }
 
 void CardView::set_rectangle(const Corners& rays) {
     Corners points;
-    for (std::size_t k = 0; k < 4; ++k) points[k] = turned_over(rays[k]);
-    set_corners(points, {});
+    std::array<std::array<double, 4>, 4> places{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        points[k] = turned_over(rays[k]);
+        places[k] = {rays[k].x, rays[k].y, rays[k].z, 0};
+    }
+    set_corners(points, places);
 }
 
 /// Section 4.5.1.
@@ -270,8 +311,25 @@ void CardView::be_per_vertex(bool per_vertex) {
     m_shader->RemoveFrom(m_actor);
     property->SetTexture("anamorphPicture", m_texture);
     property->SetTexture("anamorphResiduals", m_residuals);
+    map_places("", reading_code(m_chart));
+}
+
+void CardView::be_of_circles() {
+    if (m_per_vertex) return;
+    m_per_vertex = false;
+    m_actor->GetProperty()->SetTexture("anamorphPicture", m_texture);
+    map_places(std::string(anamorph::panorama_glsl_prelude()) +
+                   anamorph::concentric_glsl(m_chart, m_stack->depth, "anamorphSlit"),
+               circles_code(m_chart, *m_stack));
+}
+
+/// Hands the places of corners to fragments, whose colours `code` finds.
+void CardView::map_places(const std::string& functions, const std::string& code) {
+    vtkShaderProperty* shaders = m_actor->GetShaderProperty();
     m_mapper->MapDataArrayToVertexAttribute(kPlace, kPlace, vtkDataObject::FIELD_ASSOCIATION_POINTS, -1);
-    const auto after = [](const char* tag, const char* added) { return std::string(tag) + "\n" + added; };
+    const auto after = [](const char* tag, const std::string& added) {
+        return std::string(tag) + "\n" + added;
+    };
     shaders->AddVertexShaderReplacement(
         kPosition, true, after(kPosition, "in vec4 anamorphPlace;\nout vec4 anamorphPlaceVSOutput;\n"),
         false);
@@ -279,7 +337,9 @@ void CardView::be_per_vertex(bool per_vertex) {
         kPositionImpl, true, after(kPositionImpl, "  anamorphPlaceVSOutput = anamorphPlace;\n"), false);
     shaders->AddFragmentShaderReplacement(kPosition, true,
                                           after(kPosition, "in vec4 anamorphPlaceVSOutput;\n"), false);
-    shaders->AddFragmentShaderReplacement(kTextureImpl, true, reading_code(m_chart), false);
+    if (!functions.empty())
+        shaders->AddFragmentShaderReplacement(kTextureDec, true, after(kTextureDec, functions), false);
+    shaders->AddFragmentShaderReplacement(kTextureImpl, true, code, false);
 }
 
 void CardView::set_gain(double gain) {

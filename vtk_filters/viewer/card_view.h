@@ -5,6 +5,8 @@
 // Per fragment, every pixel evaluates the panorama's formula. Per vertex, as in section 4.5.1: the direction of projection
 // is the level part of where the view looks; the rectangle's corners, projected onto the plane across it, are a trapezoid, on
 // which texture coordinates are linear: those of the projection's linear part, and those of the table of what is left of it.
+//
+// Concentric mosaics are drawn per fragment: each mixes the columns of the two circles beside its line of sight.
 #pragma once
 
 #include <vtkActor.h>
@@ -37,8 +39,9 @@ class CardView {
     vtkActor* actor() { return m_actor; }
     /// Turns the camera of a renderer, and draws a view of it; `gain` as shown() has it. Returns whether it is drawn per vertex:
     /// where that is asked for, but there is no trapezoid or no bound, it is drawn per fragment.
+    /// `viewpoint`: that of mosaics.
     bool look(const View& view, const anamorph::Size& size, bool per_vertex, double gain,
-              vtkRenderer* renderer);
+              vtkRenderer* renderer, const glm::dvec2& viewpoint = glm::dvec2(0.0));
     /// The largest error of the texel of any pixel of the last view, in texels of the image that is thrown:
     /// that of tables, 0 per fragment.
     double bound() const { return m_bound; }
@@ -56,11 +59,14 @@ class CardView {
     const anamorph::ProjectionGroup& group_of(double azimuth, const anamorph::GroupOptions& field);
     void set_residuals();
     void be_per_vertex(bool per_vertex);
+    void be_of_circles();
+    void map_places(const std::string& functions, const std::string& code);
     void set_gain(double gain);
 
     anamorph::Chart m_chart;
     glm::dmat3 m_held;  ///< the turn from the panorama's frame of rays to that of views
     bool m_hdr;
+    std::optional<anamorph::ConcentricStack> m_stack;
     double m_bound = 0;
     std::optional<bool> m_per_vertex;
     anamorph::GroupOptions m_field;

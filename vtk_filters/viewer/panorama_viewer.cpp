@@ -155,8 +155,8 @@ void PanoramaViewer::draw_by_card(const anamorph::Size& size) {
         m_card = std::make_unique<CardView>(*m_panorama);
     }
     this->let_card_draw(true);
-    m_by_vertices =
-        m_card->look(this->view(), size, m_drawing == Drawing::vertices, std::exp2(m_exposure), m_renderer);
+    m_by_vertices = m_card->look(this->view(), size, m_drawing == Drawing::vertices, std::exp2(m_exposure),
+                                 m_renderer, m_panorama->viewpoint());
 }
 
 /// What it has is kept for the next time.

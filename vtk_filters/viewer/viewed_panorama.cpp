@@ -11,6 +11,7 @@
 #include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
 #include "anamorph/metadata.h"
+#include "anamorph/operation/mosaic.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
@@ -30,6 +31,10 @@ bool has_key(const std::vector<Assignment>& options, const std::string& key) {
 anamorph::ParallelFor threads() {
     OIIO::thread_pool& pool = *OIIO::default_thread_pool();
     return anamorph::parallel_for_on(pool, pool.size() + 1);
+}
+
+[[noreturn]] void refuse_card(const std::string& what) {
+    throw Error("a graphics card does not draw " + what + ": draw must be picture");
 }
 
 /// Reads files only; neither operation has any.
@@ -97,21 +102,34 @@ std::vector<float> ViewedPanorama::draw(const View& view, const anamorph::Size& 
     return pixels;
 }
 
+/// What a card's picture is of, without its pixels.
+CardPicture ViewedPanorama::card_chart() const {
+    const anamorph::ParameterValues values = this->values({}, {64, 64});
+    const anamorph::SourceFacts& facts = m_known.front().facts;
+    const auto check_target = [](const anamorph::Chart& target) {
+        if (target.projection() != anamorph::Projection::rectilinear || target.lens())
+            refuse_card("views that are not rectilinear");
+    };
+    if (is_mosaic()) {
+        if (values.given("circle")) refuse_card("one circle alone");
+        const anamorph::ConcentricStack stack = anamorph::read_concentric_stack(values);
+        const anamorph::Chart chart = anamorph::read_slit_panorama(values, facts, stack.circles);
+        check_target(anamorph::read_target_chart(values, chart));
+        return {chart, {}, 1, 0, {}, stack};
+    }
+    const anamorph::ReprojectRequest request = anamorph::read_reproject_request(values, facts);
+    check_target(request.target);
+    if (request.source.chart.spacing() != anamorph::PixelSpacing::edges)
+        refuse_card("pixels from centre to centre");
+    return {request.source.chart, request.held, values.number("srcd"), 0, {}};
+}
+
 CardPicture ViewedPanorama::card_picture() const {
     constexpr int kMostSide = 8192;
     constexpr std::int64_t kMostTexels = std::int64_t{1} << 25;
-    const auto refuse = [](const std::string& what) {
-        throw Error("a graphics card does not draw " + what + ": draw must be picture");
-    };
-    if (is_mosaic()) refuse("concentric mosaics");
-    if (m_stacks.front()->space()) refuse("in another color space");
-    const anamorph::ParameterValues values = this->values({}, {64, 64});
-    const anamorph::ReprojectRequest request =
-        anamorph::read_reproject_request(values, m_known.front().facts);
-    if (request.target.projection() != anamorph::Projection::rectilinear || request.target.lens())
-        refuse("views that are not rectilinear");
-    if (request.source.chart.spacing() != anamorph::PixelSpacing::edges)
-        refuse("pixels from centre to centre");
+    if (m_stacks.front()->space()) refuse_card("in another color space");
+    CardPicture picture = card_chart();
+    const int panoramas = picture.stack ? picture.stack->circles : 1;
     const anamorph::Source& source = m_stacks.front()->top();
     int level = 0;
     const auto fits = [&](const anamorph::Size& s) {
@@ -119,7 +137,7 @@ CardPicture ViewedPanorama::card_picture() const {
     };
     while (!fits(source.size(level)) && level + 1 < source.levels()) ++level;
     const anamorph::Size size = source.size(level);
-    if (!fits(size)) refuse("images as large as this");
+    if (!fits(size) || size.height % panoramas != 0) refuse_card("images as large as this");
     const int channels = source.channels();
     const std::size_t values_of_row =
                           static_cast<std::size_t>(size.width) * static_cast<std::size_t>(channels),
@@ -129,8 +147,9 @@ CardPicture ViewedPanorama::card_picture() const {
     if (!source.read(level, {0, 0, size.width, size.height}, stored.data(),
                      static_cast<std::ptrdiff_t>(values_of_row * type.size())))
         throw Error(m_stacks.front()->error());
-    CardPicture picture{request.source.chart.resized(size.width, size.height), request.held,
-                        values.number("srcd"), channels, std::vector<float>(count)};
+    picture.chart = picture.chart.resized(size.width, size.height / panoramas);
+    picture.channels = channels;
+    picture.pixels.resize(count);
     OIIO::convert_pixel_values(type, stored.data(), OIIO::TypeDesc::FLOAT, picture.pixels.data(),
                                static_cast<int>(count));
     return picture;

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "anamorph/operation/operation.h"
+#include "anamorph/panorama/concentric.h"
 #include "anamorph/panorama/panorama.h"
 #include "anamorph/source_stack.h"
 
@@ -30,6 +34,8 @@ struct CardPicture {
     double d = 1;                ///< distance of Pannini's projection
     int channels = 0;
     std::vector<float> pixels;  ///< rows from the top
+    /// The circles whose panoramas stand one above the other, of which `chart` is that of one.
+    std::optional<anamorph::ConcentricStack> stack = {};
 };
 
 class ViewedPanorama {
@@ -43,6 +49,8 @@ class ViewedPanorama {
     /// Moves the viewpoint, by radii of the outer circle; it stays where it is rather than to leave the
     /// circle.
     void move(double right, double ahead);
+    /// The viewpoint, to the right and ahead.
+    glm::dvec2 viewpoint() const { return {m_right, m_ahead}; }
     /// Are values linear and without an upper end?
     bool is_hdr() const { return m_hdr; }
     /// The channels of views: 1 or 2 of grey, else the first 3 or 4 are colours.
@@ -51,12 +59,13 @@ class ViewedPanorama {
     /// Draws the pixels of a view, row by row from the top. Throws Error.
     std::vector<float> draw(const View& view, const anamorph::Size& size) const;
     /// The whole panorama, at its finest level that a card takes: 8192 texels a side, and 2^25 in all. Throws
-    /// Error: mosaics, and views that are not rectilinear, have to be drawn by draw().
+    /// Error: views that are not rectilinear have to be drawn by draw().
     CardPicture card_picture() const;
     /// The direction of the point that (x, y) of a view shows, in pixels from its upper left corner.
     Direction direction(const View& view, const anamorph::Size& size, double x, double y) const;
 
   private:
+    CardPicture card_chart() const;
     anamorph::ParameterValues values(const View& view, const anamorph::Size& size) const;
 
     const anamorph::Operation* m_operation;

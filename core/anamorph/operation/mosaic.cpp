@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Concentric mosaics seen from a point inside their circles.
+#include "anamorph/operation/mosaic.h"
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -99,7 +101,9 @@ struct MosaicRequest {
     Panorama view() const { return Panorama(panorama, target, orientation); }
 };
 
-ConcentricStack read_stack(const ParameterValues& values) {
+}  // namespace
+
+ConcentricStack read_concentric_stack(const ParameterValues& values) {
     ConcentricStack stack;
     stack.circles = values.whole("circles");
     if (values.given("depth")) stack.depth = values.number("depth");
@@ -110,16 +114,22 @@ ConcentricStack read_stack(const ParameterValues& values) {
     return stack;
 }
 
-MosaicRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
-    const ConcentricStack stack = read_stack(values);
+Chart read_slit_panorama(const ParameterValues& values, const SourceFacts& facts, int circles) {
     if (facts.pixel_aspect != 1)
         throw Error("source has PixelAspectRatio=" + shortest(static_cast<float>(facts.pixel_aspect)) +
                     ": must be 1 in mosaics; resize it to square pixels, or correct the attribute");
-    if (facts.height % stack.circles != 0)
-        throw Error("circles", std::to_string(stack.circles),
+    if (facts.height % circles != 0)
+        throw Error("circles", std::to_string(circles),
                     "must divide the source's height, " + std::to_string(facts.height));
-    const Chart panorama(projection_from_name(values.text("from"), "from"), facts.width,
-                         facts.height / stack.circles, 360, PixelSpacing::edges, "src");
+    return Chart(projection_from_name(values.text("from"), "from"), facts.width, facts.height / circles, 360,
+                 PixelSpacing::edges, "src");
+}
+
+namespace {
+
+MosaicRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
+    const ConcentricStack stack = read_concentric_stack(values);
+    const Chart panorama = read_slit_panorama(values, facts, stack.circles);
     MosaicRequest request{panorama,
                           read_target_chart(values, panorama),
                           read_orientation(values),

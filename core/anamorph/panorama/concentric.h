@@ -88,6 +88,29 @@ class ConcentricMap {
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
 
+    /// A circle's slit as formulas read it: its radius over the depth, the root of 1 less its square, and 1 over that.
+    template <class T>
+    struct Slit {
+        T radius, root, per_root;
+    };
+    /// The ray of a slit towards the point that a ray of the viewpoint (px, pz) meets at the depth.
+    /// With that point at x = r n + l u, |x| = depth, n to the right of u: the slit's direction is u turned to the right by
+    /// asin(r / depth) - asin(radius / depth), and heights are as (l - t) to the slit's own l.
+    template <class T, class P>
+    static Ray<T> slit_ray(const Ray<T>& ray, const P& px, const P& pz, double per_depth,
+                           const Slit<T>& slit) {
+        const Sight<T> s = sight(ray, px, pz);
+        const T a = s.offset * per_depth, root = sqrt(T(1.0 - square(a)));
+        const T cos = root * slit.root + a * slit.radius, sin = a * slit.root - root * slit.radius;
+        return {s.along.x * cos + s.along.z * sin, s.along.y * (root - s.ahead * per_depth) * slit.per_root,
+                s.along.z * cos - s.along.x * sin};
+    }
+    /// The offset of a line of sight through the viewpoint (px, pz).
+    template <class T, class P>
+    static T offset_of(const Ray<T>& ray, const P& px, const P& pz) {
+        return sight(ray, px, pz).offset;
+    }
+
   private:
     /// The frame of local rays is turned about the vertical axis: its entries may be off by Heading::kError, the two
     /// products and their sum by as many units.
@@ -123,17 +146,11 @@ class ConcentricMap {
     Ray<T> flattest(const Ray<T>& ray) const {
         return {ray.x, ray.y * m_least_height, ray.z};
     }
-    /// The ray of the circle's slit towards the point that a ray of the viewpoint (px, pz) meets at the stack's depth.
-    /// With that point at x = r n + l u, |x| = depth, n to the right of u: the slit's direction is u turned to the right by
-    /// asin(r / depth) - asin(radius / depth), and heights are as (l - t) to the slit's own l.
+    /// The ray of this circle's slit.
     template <class T, class P>
     Ray<T> slit_ray(const Ray<T>& ray, const P& px, const P& pz) const {
-        const Sight<T> s = sight(ray, px, pz);
-        const T a = s.offset * m_per_depth, root = sqrt(T(1.0 - square(a)));
-        const auto slit = m_slit.as<T>(), slit_root = m_slit_root.as<T>(), per_root = m_per_root.as<T>();
-        const T cos = root * slit_root + a * slit, sin = a * slit_root - root * slit;
-        return {s.along.x * cos + s.along.z * sin, s.along.y * (root - s.ahead * m_per_depth) * per_root,
-                s.along.z * cos - s.along.x * sin};
+        return slit_ray(ray, px, pz, m_per_depth,
+                        Slit<T>{m_slit.as<T>(), m_slit_root.as<T>(), m_per_root.as<T>()});
     }
     /// The ray of the circle's slit for the stack's viewpoint; straight up and down, where there is no
     /// horizontal direction, the ray itself.

@@ -215,7 +215,7 @@ TEST_F(VtkViewer, TheCardDrawsCylindersByVertices) {
 TEST_F(VtkViewer, WhatNoCardDrawsIsSaid) {
     write("a.exr", panorama(256, 240, 0));
     for (const auto& [options, message] : std::vector<std::pair<std::vector<Assignment>, std::string>>{
-             {{{"circles", "3"}, {"depth", "3"}}, "concentric mosaics"},
+             {{{"circles", "3"}, {"circle", "2"}}, "one circle alone"},
              {{{"from", "fisheye"}, {"to", "stereographic"}}, "not rectilinear"}}) {
         const auto viewer = viewer_of(path("a.exr"), options);
         viewer->set_drawing(Drawing::vertices);
@@ -306,6 +306,44 @@ TEST_F(VtkViewer, MovesInConcentricMosaics) {
     EXPECT_GT(off(*viewer, drawn(stack, {30, 0, 70}, options, "mosaic")), 1);
     for (int i = 0; i < 40; ++i) event(*viewer, vtkCommand::KeyPressEvent, {0, 0}, "w");
     EXPECT_EQ(viewer->error(), "") << "it stays inside the circle";
+}
+
+TEST_F(VtkViewer, TheCardDrawsConcentricMosaics) {
+    for (const auto& [circles, from, depth] :
+         {std::tuple("3", "cylindrical", "3"), std::tuple("4", "equirectangular", "1.5"),
+          std::tuple("1", "mercator", ""), std::tuple("2", "cylindrical", "")}) {
+        SCOPED_TRACE(std::string(circles) + from);
+        const OIIO::ImageBuf stack = panorama(512, 144 * std::stoi(circles), 0);
+        write("stack.exr", stack);
+        std::vector<Assignment> options = {{"circles", circles}, {"from", from}};
+        if (*depth) options.push_back({"depth", depth});
+        const auto viewer = viewer_of(path("stack.exr"), options);
+        viewer->set_drawing(Drawing::fragments);
+        std::vector<Assignment> moved = options;
+        double right = 0, ahead = 0;
+        for (const View& view : {View{30, 0, 70}, View{-100, 15, 60}, View{178, -10, 50}}) {
+            viewer->look(view);
+            EXPECT_LE(off(*viewer, drawn(stack, view, moved, "mosaic"), 0.002), 6) << view.yaw;
+            EXPECT_EQ(viewer->error(), "");
+            if (right != 0 && stack.spec().height > 144) {
+                EXPECT_GT(off(*viewer, drawn(stack, view, options, "mosaic"), 0.002), 6) << "it has moved";
+            }
+            // Per vertex it is the same.
+            viewer->set_drawing(Drawing::vertices);
+            EXPECT_LE(off(*viewer, drawn(stack, view, moved, "mosaic"), 0.002), 6) << view.yaw;
+            EXPECT_FALSE(viewer->by_vertices());
+            viewer->set_drawing(Drawing::fragments);
+            // Steps to the right and ahead, for the next one.
+            const double c = std::cos(view.yaw * M_PI / 180), s = std::sin(view.yaw * M_PI / 180);
+            for (int k = 0; k < 6; ++k) {
+                event(*viewer, vtkCommand::KeyPressEvent, {0, 0}, k < 4 ? "d" : "w");
+                right += 0.05 * (k < 4 ? c : s), ahead += 0.05 * (k < 4 ? -s : c);
+            }
+            moved = options;
+            moved.push_back({"x", anamorph::shortest(right)});
+            moved.push_back({"z", anamorph::shortest(ahead)});
+        }
+    }
 }
 
 TEST(VtkViewerShown, ValuesOfFilesThatAreEncodedStayAsTheyAre) {
