@@ -109,6 +109,7 @@ OTHERS = [
     Other("python", "import vtkAnamorphDeformImage\n", "vtk", "image"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
+    Other("python", "import vtkAnamorphPanoramaView\n", "vtk", "view"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),
     Other("python", "mapper.AddTexture(", "vtk", "textures"),
     Other("python", 'SetRepresentationType("Ellipsoids")', "paraview", "ellipsoids"),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anamorph/projector/projection_groups.h"
+#include "anamorph/projector/projector_rows.h"
 
 class vtkAnamorphPanoramaProjector;
 class vtkAnamorphProjectionShader;
@@ -15,10 +16,10 @@ namespace anamorph_vtk {
 
 /// The facts that the text depends on: of a projector, all but its pose; and how it is thrown.
 struct ThrownPanorama {
-    int projection = 0, width = 0, height = 0;
+    anamorph::ThrownChart chart;
+    int width = 0, height = 0;
     int components = 4;  ///< components of the texture as it was loaded
-    double fov = 0, d = 1, fade = 0;
-    std::string lens;
+    double fade = 0;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
     int shadow_size = 0;  ///< 0: nothing is hidden
     double vertical_reach = 1;

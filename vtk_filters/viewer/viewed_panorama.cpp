@@ -112,6 +112,8 @@ CardPicture ViewedPanorama::card_picture() const {
         refuse("views that are not rectilinear");
     if (request.source.chart.spacing() != anamorph::PixelSpacing::edges)
         refuse("pixels from centre to centre");
+    if (request.source.chart.padding().pixels > 0) refuse("images with padding");
+    if (request.source.chart.vertical().horizon) refuse("parts of panoramas");
     const anamorph::Source& source = m_stacks.front()->top();
     int level = 0;
     const auto fits = [&](const anamorph::Size& s) {
@@ -130,7 +132,7 @@ CardPicture ViewedPanorama::card_picture() const {
                      static_cast<std::ptrdiff_t>(values_of_row * type.size())))
         throw Error(m_stacks.front()->error());
     CardPicture picture{request.source.chart.resized(size.width, size.height), request.held,
-                        values.number("srcd"), channels, std::vector<float>(count)};
+                        channels, std::vector<float>(count)};
     OIIO::convert_pixel_values(type, stored.data(), OIIO::TypeDesc::FLOAT, picture.pixels.data(),
                                static_cast<int>(count));
     return picture;

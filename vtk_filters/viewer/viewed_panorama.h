@@ -27,7 +27,6 @@ struct Direction {
 struct CardPicture {
     anamorph::Chart chart;
     anamorph::Orientation held;  ///< orientation of the panorama
-    double d = 1;                ///< distance of Pannini's projection
     int channels = 0;
     std::vector<float> pixels;  ///< rows from the top
 };
