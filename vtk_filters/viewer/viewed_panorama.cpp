@@ -131,8 +131,8 @@ CardPicture ViewedPanorama::card_picture() const {
     if (!source.read(level, {0, 0, size.width, size.height}, stored.data(),
                      static_cast<std::ptrdiff_t>(values_of_row * type.size())))
         throw Error(m_stacks.front()->error());
-    CardPicture picture{request.source.chart.resized(size.width, size.height), request.held,
-                        channels, std::vector<float>(count)};
+    CardPicture picture{request.source.chart.resized(size.width, size.height), request.held, channels,
+                        std::vector<float>(count)};
     OIIO::convert_pixel_values(type, stored.data(), OIIO::TypeDesc::FLOAT, picture.pixels.data(),
                                static_cast<int>(count));
     return picture;
