@@ -379,15 +379,28 @@ bool moves_channels_stored(const PictureRequest& picture, const std::vector<Imag
                        [&](int c) { return loses_values(first.channelformat(c)); });
 }
 
+namespace {
+
+/// Where the display window of a picture begins: where that of the source does whose format it has, but for numbers near the end of
+/// int, which hosts add sizes to.
+int window_origin(int of_source, bool keeps_format) {
+    constexpr int kMost = 1 << 30;
+    return keeps_format && of_source >= -kMost && of_source <= kMost ? of_source : 0;
+}
+
+}  // namespace
+
 ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, bool stored,
                        bool keeps_types) {
     ImageSpec spec = source ? *source : ImageSpec();
     const Box display = picture.shown();
-    spec.x = -display.x0;
-    spec.y = -display.y0;
+    const bool keeps_format = source && picture.keeps_format;
+    spec.full_x = window_origin(spec.full_x, keeps_format);
+    spec.full_y = window_origin(spec.full_y, keeps_format);
+    spec.x = spec.full_x - display.x0;
+    spec.y = spec.full_y - display.y0;
     spec.width = picture.size.width;
     spec.height = picture.size.height;
-    spec.full_x = spec.full_y = 0;
     spec.full_width = display.width();
     spec.full_height = display.height();
     spec.z = spec.full_z = 0;

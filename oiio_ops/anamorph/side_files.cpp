@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <vector>
 
 #include "anamorph/file_names.h"
@@ -37,7 +39,11 @@ class OiioImage final : public SideImage {
         const OIIO::ImageSpec& spec = m_input->spec();
         if (spec.deep || spec.depth > 1) throw Error(m_what + " is deep or a volume: must be a flat image");
         check_windows(spec, m_what);
+        m_has_more_parts = m_input->seek_subimage(1, 0);
+        m_input->seek_subimage(0, 0);
     }
+
+    bool has_more_parts() const { return m_has_more_parts; }
 
     Size size() const override {
         const OIIO::ImageSpec& spec = m_input->spec();
@@ -71,6 +77,28 @@ class OiioImage final : public SideImage {
   private:
     std::string m_name, m_what;
     std::unique_ptr<OIIO::ImageInput> m_input;
+    bool m_has_more_parts = false;
+};
+
+/// The identities of files with several parts: what is kept of a file is not opened again.
+class FilesOfParts {
+  public:
+    static FilesOfParts& instance() {
+        static auto& files = *new FilesOfParts;
+        return files;
+    }
+    void add(const std::string& identity) {
+        const std::lock_guard lock(m_mutex);
+        m_identities.insert(identity);
+    }
+    bool has(const std::string& identity) const {
+        const std::lock_guard lock(m_mutex);
+        return m_identities.count(identity) > 0;
+    }
+
+  private:
+    mutable std::mutex m_mutex;
+    std::set<std::string> m_identities;
 };
 
 class FileReader final : public SideFileReader {
@@ -131,7 +159,15 @@ std::string KeyedFileReader::text(const std::string& name) const {
 }
 
 std::unique_ptr<SideImage> KeyedFileReader::image(const std::string& key, const std::string& name) const {
-    return naming(key, [&] { return side_file_reader().image(key, name); });
+    auto image = naming(key, [&] { return std::make_unique<OiioImage>(key, name); });
+    if (image->has_more_parts())
+        for (const auto& [k, file] : m_files)
+            if (file.name == name && !file.identity.empty()) FilesOfParts::instance().add(file.identity);
+    return image;
+}
+
+bool is_first_of_parts(const SideFile& file) {
+    return !file.identity.empty() && FilesOfParts::instance().has(file.identity);
 }
 
 }  // namespace anamorph

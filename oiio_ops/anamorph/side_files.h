@@ -22,4 +22,7 @@ class KeyedFileReader final : public SideFileReader {
     const SideFiles& m_files;
 };
 
+/// Has an image that was opened as this file, in the state that its identity tells, several parts, of which the first is read?
+bool is_first_of_parts(const SideFile& file);
+
 }  // namespace anamorph

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "anamorph/chain/joined.h"
@@ -199,12 +200,14 @@ class RecipeContent final : public Content {
             if (is_gathered) continue;
             const SideFile& file = recipe.files.at(key);
             identity += file.identity;
-            images.push_back(open_or_none(file, opening, part, parts));
+            images.push_back(open_or_none(key, file, opening, part, parts));
             if (!images.back().image) missing.push_back(key);
             specs.push_back(images.back().image ? images.back().image->spec() : ImageSpec());
         }
         const KeyedFileReader reader(recipe.files);
         m_pictures = recipe.operation->read({values, known, recipe.files, reader, missing});
+        for (const auto& [key, file] : recipe.files)
+            if (!is_drawn(recipe, key)) m_side_files.emplace_back(key, file);
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
         m_says_hash = values.knows("hash") && values.toggle("hash");
@@ -247,6 +250,8 @@ class RecipeContent final : public Content {
             // pixels have to be drawn for that.
             if (l.solved && !l.solved->picture().reached_by_drawing())
                 add_attributes(l.spec, l.solved->reached());
+            if (const std::string keys = first_parts(); !keys.empty())
+                l.spec.attribute("anamorph:first_part", keys);
             if (m_says_hash && level == 0) l.spec.attribute("anamorph:hash", hash_of(subimage));
         });
         return l.spec;
@@ -456,13 +461,34 @@ class RecipeContent final : public Content {
     }
 
     /// Its part that goes with `part` of `parts`, where it has as many, else its first.
-    OpenSource open_or_none(const SideFile& file, Opening& opening, int part, int parts) {
+    OpenSource open_or_none(const std::string& key, const SideFile& file, Opening& opening, int part,
+                            int parts) {
         try {
-            const bool has_as_many = parts > 1 && std::ssize(opening.parts_of(file)) == parts;
-            return open_source(file, opening, has_as_many ? part : 0);
+            const auto own = static_cast<int>(opening.parts_of(file).size());
+            if (own > 1 && own != parts) m_first_parts.insert(key.substr(key.find('/') + 1));
+            return open_source(file, opening, own == parts ? part : 0);
         } catch (const Error&) {
             return {};
         }
+    }
+
+    /// Does a key name a source, or an image that is drawn as one ("picture/KEY" by its key)?
+    static bool is_drawn(const Recipe& recipe, const std::string& key) {
+        const auto has = [](const std::vector<std::string>& keys, const std::string& one) {
+            return std::find(keys.begin(), keys.end(), one) != keys.end();
+        };
+        return has(recipe.operation->sources, key) || has(recipe.linked_images, key) ||
+               has(recipe.linked_images, "picture/" + key);
+    }
+
+    /// The keys of files beside the sources of which only the first of several parts is read, as far as they have been.
+    std::string first_parts() const {
+        std::set<std::string> keys = m_first_parts;
+        for (const auto& [key, file] : m_side_files)
+            if (is_first_of_parts(file)) keys.insert(key.substr(0, key.find('/')));
+        std::string all;
+        for (const std::string& key : keys) all += (all.empty() ? "" : ", ") + key;
+        return all;
     }
 
     static Size tile_of(const ParameterValues& values) {
@@ -497,6 +523,8 @@ class RecipeContent final : public Content {
         if (is_new) {
             Level& made = found->second;
             made.request = *m_pictures->picture(subimage, number);
+            // Windows of coarser levels would not lie on pixels.
+            made.request.keeps_format = made.request.keeps_format && m_levels == 1;
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
             made.header = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored, true);
             // Channels that are moved keep the type of all of them.
@@ -516,11 +544,13 @@ class RecipeContent final : public Content {
 
     std::optional<ImageSpec> m_source;  ///< of the first source, upright
     std::unique_ptr<const Pictures> m_pictures;
-    std::string m_key;            ///< of the operation
-    Attributes m_lenses;          ///< what lenses of a database are
-    std::string m_part;           ///< which of several parts is drawn, "0 of 3"
-    std::string m_chain;          ///< the maps that the picture is drawn through, "pano of lens"
-    std::string m_said_of_chain;  ///< what the picture says of that where its source is a recipe
+    std::string m_key;                    ///< of the operation
+    Attributes m_lenses;                  ///< what lenses of a database are
+    std::string m_part;                   ///< which of several parts is drawn, "0 of 3"
+    std::string m_chain;                  ///< the maps that the picture is drawn through, "pano of lens"
+    std::string m_said_of_chain;          ///< what the picture says of that where its source is a recipe
+    std::set<std::string> m_first_parts;  ///< keys of images that are drawn of which only the first part is
+    std::vector<std::pair<std::string, SideFile>> m_side_files;  ///< files that are not drawn, by their keys
     std::optional<JoinSource> m_joined;
     std::string m_space;  ///< the color space that sources are filtered in
     std::vector<std::shared_ptr<const Content>> m_nested;

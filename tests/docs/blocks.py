@@ -110,6 +110,7 @@ OTHERS = [
     Other("python", "import vtkAnamorphNonlinearTexture\n", "vtk", "bent"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
+    Other("python", "import vtkAnamorphPanoramaView\n", "vtk", "view"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),
     Other("python", "mapper.AddTexture(", "vtk", "textures"),
     Other("python", 'SetRepresentationType("Ellipsoids")', "paraview", "ellipsoids"),

@@ -94,6 +94,15 @@ def check_project():
     assert projection.GetOutput(0).GetPointData().GetTCoords()
 
 
+def check_view():
+    view = run("view", {"image": red_picture()})["view"]
+    view.Update()
+    seen = view.GetOutput()
+    assert seen.GetExtent() == (-16, 515, -16, 515, 0, 0), seen.GetExtent()
+    assert (vtk_to_numpy(seen.GetPointData().GetScalars()) == [250, 20, 20, 255]).all()
+    assert seen.GetFieldData().GetArray("anamorph:max_error").GetValue(0) == view.GetMaxError() <= 0.01
+
+
 def check_shader():
     sphere, mapper, actor, texture = vtkSphereSource(), vtkPolyDataMapper(), vtkActor(), vtkTexture()
     sphere.SetCenter(0, 1.6, -3)
@@ -119,8 +128,8 @@ def check_mapper():
     assert image.GetOutput().GetNumberOfPoints() > 0
 
 
-checks = {"deform": check_deform, "image": check_image, "bent": check_bent,
-          "project": check_project, "shader": check_shader, "mapper": check_mapper}
+checks = {"deform": check_deform, "image": check_image, "bent": check_bent, "project": check_project, "shader": check_shader,
+          "view": check_view, "mapper": check_mapper}
 for check in checks.values():
     check()
 assert set(TEXT) == {*checks, "depths", "anchor", "textures"}, TEXT.keys()

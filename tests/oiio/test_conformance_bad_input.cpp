@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong names, recipes and values, and none that crashes or hangs: conformance items 20, 21, 23, 24, 32.
 #include <filesystem>
+#include <map>
 #include <random>
 
 #include "host.h"
@@ -86,10 +87,65 @@ TEST_F(BadInput, NumbersOfProjectionsAndLensesOfADatabase) {
     expect_refused("from=rectilinear&srclens=ocam:a0=-40", "ocam must be of a stereographic picture");
     expect_refused("from=stereographic&srclens=ocam:a2=1", "folds at a radius of 0 pixels");
     expect_refused("from=rectilinear&srclens=poly:k0=nan", "k0 must be a number");
+    // Lenses of cylinders and panoramas.
+    for (const char* from : {"equirectangular", "cylindrical"}) {
+        const std::string of = std::string("from=") + from + "&srcfov=100&srclens=";
+        for (const char* lens :
+             {"brown:k1=0.1", "3de4:k1=0.1", "division:k1=0.1", "kb4:k1=0.1", "ocam:a0=-40"})
+            expect_refused(of + lens, "srclens", std::string("must be ptlens or poly for ") + from);
+        for (const char* lens :
+             {"ptlens:a=nan", "ptlens:a=1e400", "ptlens:g=inf", "poly:k1=nan",
+              "ptlens:b=", "poly:k1=0.1,k1=0.1", "ptlens:k1=0.1", "poly:a=0.1", "ptlens:a=-2147483648,b=1e9"})
+            expect_refused(of + lens, "srclens=");
+        for (const char* lens : {"ptlens:b=-0.02,d=2,e=-1,g=3,t=-2", "poly:k0=0.01,k1=-0.01"})
+            open_and_read("city.exr.pano?size=20&" + of + lens);
+        expect_refused(std::string("from=") + from + "&srcfov=360&srclens=ptlens:b=0.01", "srclens",
+                       "360 degrees");
+    }
     for (const char* wrong : {"lensfun:", "lensfun:lens=nothing like it,crop=1,focal=35", "lensfun:focal=nan",
                               "lensfun:crop=2147483648", "lensfun:lens=a,lens=b", "lensfun:=", "lensfun"})
         expect_refused(std::string("from=rectilinear&srclens=") + wrong, "srclens=lensfun", "");
     expect_refused("to=rectilinear&lens=lensfun:lens=x,crop=1,focal=35", "width and height");
+}
+
+// Every key of every operation, given what is no value of most: a picture, or one line that names the key.
+TEST_F(BadInput, EveryKeyIsNamedByItsError) {
+    write_text("lines.csv", "10,10,40,20,12,14,41,18\n");
+    write_text("few.json", R"({"columns": 1, "rows": 1, "vertices": [[0, 0], [60, 3], [0, 30], [64, 32]]})");
+    write_text("one.n", "figure one 1 a\nellipsoid a 1 1 1\nstop\n");
+    const std::map<std::string, std::string> others{
+        {"pano", "size=9&src=city.exr"},   {"lens", "lens=3de4:k1=0.01&src=city.exr"},
+        {"map", "size=9&src=city.exr"},    {"warp", "mesh=few.json&src=city.exr"},
+        {"mosaic", "size=9&src=city.exr"}, {"morph", "features=lines.csv&b=city.exr&a=city.exr"},
+        {"drape", "size=9&src=city.exr"},  {"figure", "size=9&script=one.n"}};
+    const char* const wild[] = {
+        "nan",     "-inf",  "-1",   "2147483648", "-2147483649", "4294967297",
+        "1e400",   "",      "x",    " ",          "5%%",         "nan%",
+        "1e9%",    "5x5x5", "-5x3", "9x",         "[1",          "2147483648x2147483648",
+        "a:b=c,d", "\x01"};
+    int refused = 0;
+    for (const Operation* operation : operations()) {
+        const auto found = others.find(operation->name);
+        if (found == others.end()) continue;
+        const std::string rest = "&" + found->second + "&";
+        for (const Parameter& parameter : *operation->parameters)
+            for (const char* value : wild) {
+                // Files are opened, and a key that is given twice is another error.
+                if (rest.find("&" + parameter.name + "=") != std::string::npos) continue;
+                const std::string name =
+                    "v." + operation->name + "?" + parameter.name + "=" + value + "&" + found->second;
+                if (OIIO::ImageInput::open(name)) continue;
+                const std::string error = OIIO::geterror();
+                ++refused;
+                // A source is called by its own name.
+                EXPECT_THAT(error, AllOf(AnyOf(HasSubstr(parameter.name),
+                                               HasSubstr(std::string("source \"") + value + "\"")),
+                                         Not(HasSubstr("\n"))))
+                    << name;
+                EXPECT_LE(error.size(), 400u) << name << "\n" << error;
+            }
+    }
+    EXPECT_GT(refused, 3000);
 }
 
 TEST_F(BadInput, conformance_20_sizes) {

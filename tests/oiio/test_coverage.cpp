@@ -275,6 +275,43 @@ TEST_F(Coverage, GoesThroughChains) {
     }
 }
 
+// Holes of an ST-map in the middle of a chain are cut out of color, alpha and coverage alike, with no pixel in between.
+TEST_F(Coverage, OfHolesGoesThroughChains) {
+    constexpr int kWidth = 360, kHeight = 240;
+    OIIO::ImageBuf map(OIIO::ImageSpec(kWidth, kHeight, 4, OIIO::TypeFloat));
+    const auto is_hole = [](int x, int y) { return x >= 90 && x < 170 && y >= 60 && y < 130; };
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const float texel[] = {(static_cast<float>(x) + 0.5f) / kWidth,
+                                   (static_cast<float>(y) + 0.5f) / kHeight, 0, is_hole(x, y) ? 0.f : 1.f};
+            map.setpixel(x, y, texel);
+        }
+    write_image(map, "holes.exr");
+    for (const std::string outer :
+         {"v.map?u=x*0.7+53.3&v=y*0.8+28.1", "v.pano?from=rectilinear&srcfov=60&fov=40&yaw=3&size=300x200"}) {
+        SCOPED_TRACE(outer);
+        const std::string source = "&src=(w.warp?mesh=holes.exr&src=%s)";
+        const std::string colored = of(outer + "&alpha=1" + source, "plate.exr");
+        EXPECT_THAT(open(colored)->spec().get_string_attribute("anamorph:chain"), HasSubstr(" of warp"));
+        const std::vector<float> all = read_floats(colored),
+                                 cover = read_floats(of(outer + "&output=coverage" + source, "plate.exr")),
+                                 white = read_floats(of(outer + source, "white.exr"));
+        ASSERT_EQ(all.size(), 4 * cover.size());
+        ASSERT_EQ(white.size(), cover.size());
+        int holes = 0;
+        for (std::size_t i = 0; i < cover.size(); ++i) {
+            ASSERT_EQ(all[4 * i + 3], cover[i]) << i;
+            ASSERT_NEAR(white[i], cover[i], 1e-6) << i;
+            ASSERT_TRUE(cover[i] == 0 || cover[i] > 0.999f) << i;
+            if (cover[i] == 0) {
+                ++holes;
+                for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(all[4 * i + c], 0) << i;
+            }
+        }
+        EXPECT_GT(holes, static_cast<int>(cover.size()) / 20);
+    }
+}
+
 TEST_F(Coverage, OfDrapesIsTheirOwn) {
     const std::string drape =
         "v.drape?src=plate.exr&surface=cylinder&angle=200&camera=0.2,0.3,2.2&size=90x70";

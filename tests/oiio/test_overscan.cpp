@@ -260,6 +260,48 @@ TEST_F(Overscan, IsReadThroughChains) {
     }
 }
 
+// A display window that does not begin at 0,0 stays where it is in pictures of the same format; what is in it is the same.
+TEST_F(Overscan, DisplayWindowsStayWhereTheyAre) {
+    OIIO::ImageBuf plate = panorama(64, 48);
+    write_image(plate, "plate.exr");
+    plate.specmod().x = plate.specmod().full_x = 30;
+    plate.specmod().y = plate.specmod().full_y = -7;
+    write_image(plate, "moved.exr");
+    write_text("grid.json", R"({"columns": 1, "rows": 1, "units": "fractions",
+                                "vertices": [[0.1, -0.1], [1, 0.1], [0, 0.9], [1.2, 1]]})");
+    write_text("lines.csv", "10,10,40,20,12,14,41,18\n");
+    const auto windows = [](const std::string& name) {
+        const auto input = open(name);
+        return input ? std::vector<int>{input->spec().x, input->spec().y, input->spec().full_x,
+                                        input->spec().full_y}
+                     : std::vector<int>();
+    };
+    for (const char* keys : {".lens?lens=3de4:k1=-0.1", ".map?u=x+3&v=y*0.9", ".warp?mesh=grid.json",
+                             ".morph?b=plate.exr&features=lines.csv", ".map?u=x+3&v=y&overscan=5"}) {
+        SCOPED_TRACE(keys);
+        const int over = std::string(keys).find("overscan") == std::string::npos ? 0 : 5;
+        EXPECT_EQ(read_floats(std::string("moved.exr") + keys), read_floats(std::string("plate.exr") + keys));
+        EXPECT_EQ(windows(std::string("moved.exr") + keys), (std::vector<int>{30 - over, -7 - over, 30, -7}));
+        EXPECT_EQ(windows(std::string("plate.exr") + keys), (std::vector<int>{-over, -over, 0, 0}));
+    }
+    // Pictures of another format, and of levels, begin at 0,0.
+    for (const char* keys :
+         {".map?u=x&v=y&size=20x10", ".pano?from=rectilinear&srcfov=60&size=64x48", ".map?u=x&v=y&mip=1"})
+        EXPECT_EQ(windows(std::string("moved.exr") + keys), (std::vector<int>{0, 0, 0, 0})) << keys;
+    // A recipe of a recipe, joined and not, and what stock programs write.
+    for (const char* joined : {"0", "1"}) {
+        const std::string chain =
+            std::string("x.map?u=x&v=y+1&concatenate=") + joined + "&src=(moved.exr.lens?lens=3de4:k1=-0.1)";
+        EXPECT_EQ(windows(chain), (std::vector<int>{30, -7, 30, -7}));
+        EXPECT_EQ(read_floats(chain), read_floats(std::string("x.map?u=x&v=y+1&concatenate=") + joined +
+                                                  "&src=(plate.exr.lens?lens=3de4:k1=-0.1)"));
+    }
+    ASSERT_EQ(run("oiiotool 'moved.exr.lens?lens=3de4:k1=-0.1' -o written.exr").status, 0);
+    EXPECT_EQ(windows("written.exr"), (std::vector<int>{30, -7, 30, -7}));
+    // Some pixels of it alone, as a cache and scanlines read them.
+    expect_one_picture("moved.exr.lens?lens=3de4:k1=-0.1", 10, 8);
+}
+
 TEST_F(Overscan, IsRefusedWhereItCannotBe) {
     const auto refused = [](const std::string& recipe, const char* why) {
         EXPECT_THAT(open_error(recipe), HasSubstr(why)) << recipe;

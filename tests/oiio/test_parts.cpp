@@ -230,6 +230,29 @@ TEST_F(Parts, TheFarSideOfADrapeHasThemToo) {
     EXPECT_NE(part_of(both, 0), part_of(both, 1));
 }
 
+// What is read beside the sources is the first part of its file, and the picture says so, however often it is opened.
+TEST_F(Parts, AreSaidNotToBeReadOfOtherFiles) {
+    ASSERT_EQ(run("oiiotool beauty.exr --ch R,G -o map.exr map.exr --siappend -o maps.exr").status, 0);
+    ASSERT_EQ(run("oiiotool beauty.exr beauty.exr --siappend -o beauties.exr").status, 0);
+    ASSERT_EQ(parts_in("maps.exr"), 2);
+    const auto first = [](const std::string& name) {
+        const auto input = open(name);
+        return input ? input->spec().get_string_attribute("anamorph:first_part") : "none";
+    };
+    for (const int time : {0, 1}) {
+        SCOPED_TRACE(time);
+        EXPECT_EQ(first("beauty.exr.warp?mesh=maps.exr"), "mesh");
+        EXPECT_EQ(first("beauty.exr.warp?mesh=map.exr"), "");
+        EXPECT_EQ(first("beauty.exr.drape?height=maps.exr&size=30x20"), "height");
+        EXPECT_EQ(first("maps.exr.drape?height=maps.exr&back=maps.exr&size=30x20"), "height");
+        EXPECT_EQ(first("map.exr.drape?back=maps.exr&size=30x20"), "back");
+        EXPECT_EQ(first("map.exr.drape?back=map.exr&size=30x20"), "");
+        EXPECT_EQ(first("beauty.exr.drape?surface=positions&positions=beauties.exr&size=30x20"), "positions");
+        EXPECT_EQ(first("beauty.exr.drape?blend=beauties.exr&weights=0.5&size=30x20"), "blend");
+        EXPECT_EQ(first("map.exr.drape?height=maps.exr&back=maps.exr&size=30x20"), "back, height");
+    }
+}
+
 // What is wrong with a file that is no source begins with the key that names it; what is too large names what made it so.
 TEST_F(Parts, ErrorsNameTheirKeys) {
     EXPECT_THAT(open_error("beauty.exr.warp?mesh=none.json"),

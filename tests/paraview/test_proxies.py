@@ -20,7 +20,7 @@ PAPERS = ("Oka 1987", "Chapman 1986", "Kim 2003")
 # What a panel has no use for: other ways to set the same, and what the host sets.
 NO_PROPERTY = {
     "vtkAnamorphBlendShapeReader": {"SetFileName"},  # AddFileName() takes several
-    "vtkAnamorphDrape": {"SetBlendWeight", "SetPositionsConnection", "SetHeightConnection", "SetDeformationsConnection"},
+    "vtkAnamorphDrape": {"SetBlendWeight", "SetPositionsConnection", "SetHeightConnection", "SetDeformationsConnection", "SetBackConnection"},
     "vtkAnamorphFigureImage": {"SetBumpConnection"},
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection",
                           "SetOrientation", "SetMirror", "SetDeformationName"},  # Frames and Names have them
@@ -292,6 +292,8 @@ def is_taken(cls, command, value, perspective):
     new.GetExecutive().AddObserver("ErrorEvent", lambda *_: errors.append(1))
     if perspective:
         new.SetCameraParallelProjection(False)
+    if command == "SetVerticalFieldOfView":
+        new.SetProjection(anamorph.vtkAnamorphPanoramaProjection.FISHEYE)  # which may have all of it
     give(new, command, value)
     kept = numbers(getattr(new, "G" + command[1:])()) == [float(v) for v in value]
     if kept:

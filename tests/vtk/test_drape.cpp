@@ -20,6 +20,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkVariant.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -486,6 +487,8 @@ TEST(VtkDrape, WhatASchemeCannotMeanIsAnErrorThatNamesTheProperty) {
     }
     EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetStyle(Drape::DEPTH); }),
                 HasSubstr("Style=depth: must be color or texture coordinates with Scheme=hardware"));
+    EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetStyle(Drape::COVERAGE); }),
+                HasSubstr("Style=coverage: must be"));
     EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetStyle(Drape::NORMAL); }),
                 HasSubstr("Style=normal: must be"));
     EXPECT_THAT(error(Drape::HARDWARE, [](Drape* f) { f->SetBackground(0, 0.5, 0, 1); }),
@@ -1294,6 +1297,90 @@ TEST(VtkDrape, PrintsItsState) {
 
 TEST(VtkDrape, FactoriesMayOverrideIt) {
     expect_overridden<vtkAnamorphDrape>("vtkAnamorphDrape");
+}
+
+/// An image of bytes of three components, of one color but for its left half.
+vtkSmartPointer<vtkImageData> halves(int width, int height, std::array<int, 3> left,
+                                     std::array<int, 3> right) {
+    const auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(width, height, 1);
+    image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i)
+            for (int c = 0; c < 3; ++c)
+                image->SetScalarComponentFromDouble(
+                    i, j, 0, c, (i < width / 2 ? left : right)[static_cast<std::size_t>(c)]);
+    return image;
+}
+
+// The far side's own picture, of another size, is seen from there the right way round, and nothing of it from here.
+TEST(VtkDrape, TheFarSideHasItsOwnPicture) {
+    vtkNew<Drape> drape;
+    drape->SetInputData(halves(40, 30, {250, 0, 0}, {0, 250, 0}));
+    drape->SetInputData(4, halves(90, 20, {0, 0, 250}, {200, 200, 200}));
+    drape->SetViewSize(60, 60);
+    drape->SetFilter(Drape::NEAREST);
+    const auto at = [&](int i) {
+        std::array<int, 3> color{};
+        for (int c = 0; c < 3; ++c)
+            color[static_cast<std::size_t>(c)] =
+                static_cast<int>(drape->GetOutput()->GetScalarComponentAsDouble(i, 30, 0, c));
+        return color;
+    };
+    drape->SetCameraPosition(0, 0, 3);
+    drape->Update();
+    EXPECT_EQ(at(25), (std::array<int, 3>{250, 0, 0}));
+    EXPECT_EQ(at(35), (std::array<int, 3>{0, 250, 0}));
+    drape->SetCameraPosition(0, 0, -3);
+    drape->Update();
+    EXPECT_EQ(at(25), (std::array<int, 3>{0, 0, 250}));
+    EXPECT_EQ(at(35), (std::array<int, 3>{200, 200, 200}));
+    Errors errors(drape);
+    const auto error = [&](vtkImageData* back) {
+        errors.clear();
+        drape->SetInputData(4, back);
+        drape->Update();
+        return errors.text();
+    };
+    vtkNew<vtkImageData> grey, floats;
+    grey->SetDimensions(4, 4, 1);
+    grey->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+    floats->SetDimensions(4, 4, 1);
+    floats->AllocateScalars(VTK_FLOAT, 3);
+    EXPECT_THAT(error(grey), HasSubstr("Back=1 components: must have as many as the texture, 3"));
+    EXPECT_THAT(error(floats), HasSubstr("must be of the texture's type"));
+    EXPECT_THAT(error(vtkNew<vtkImageData>()), HasSubstr("the input Back"));
+    drape->SetScheme(Drape::HARDWARE);
+    EXPECT_THAT(error(halves(40, 30, {1, 1, 1}, {2, 2, 2})), HasSubstr("Scheme=hardware"));
+}
+
+// Coverage is what a white texture shows over nothing.
+TEST(VtkDrape, CoverageIsTheShareOfAPixel) {
+    vtkNew<vtkImageData> white;
+    white->SetDimensions(32, 32, 1);
+    white->AllocateScalars(VTK_FLOAT, 1);
+    white->GetPointData()->GetScalars()->Fill(1);
+    vtkNew<Drape> drape;
+    drape->SetInputData(white);
+    drape->SetViewSize(80, 60);
+    drape->SetSurface(Drape::CYLINDER);
+    drape->SetFilter(Drape::ANTIALIAS);
+    drape->SetCameraPosition(0.4, 0.7, 2.2);
+    drape->Update();
+    std::vector<double> colors;
+    for (vtkIdType i = 0; i < 80 * 60; ++i)
+        colors.push_back(drape->GetOutput()->GetPointData()->GetScalars()->GetComponent(i, 0));
+    drape->SetStyle(Drape::COVERAGE);
+    drape->Update();
+    vtkDataArray* coverage = drape->GetOutput()->GetPointData()->GetScalars();
+    EXPECT_STREQ(coverage->GetName(), "Coverage");
+    int partly = 0;
+    for (vtkIdType i = 0; i < 80 * 60; ++i) {
+        const double share = coverage->GetComponent(i, 0);
+        ASSERT_NEAR(share, colors[static_cast<std::size_t>(i)], 1e-5) << i;
+        partly += share > 0.01 && share < 0.99;
+    }
+    EXPECT_GT(partly, 20);
 }
 
 }  // namespace

@@ -497,12 +497,13 @@ TEST(VtkPanoramaProjection, CountsModificationsExecutesOnceAndPrints) {
     expect_modified_by<Filter>(
         filter, {[](Filter* f) { f->SetProjection(Filter::EAC); }, [](Filter* f) { f->SetPanoramaWidth(30); },
                  [](Filter* f) { f->SetPanoramaHeight(20); }, [](Filter* f) { f->SetFieldOfView(90); },
-                 [](Filter* f) { f->SetPanniniDistance(2); }, [](Filter* f) { f->SetLens("none"); },
+                 [](Filter* f) { f->SetPanniniDistance(2); }, [](Filter* f) { f->SetProjectionAlpha(0.25); },
+                 [](Filter* f) { f->SetVerticalFieldOfView(70); }, [](Filter* f) { f->SetLens("none"); },
                  [](Filter* f) { f->SetPosition(1, 2, 3); }, [](Filter* f) { f->SetDirection(1, 0, 3); },
                  [](Filter* f) { f->SetViewUp(0, 0, 3); }, [](Filter* f) { f->SetTolerance(3); },
                  [](Filter* f) { f->OcclusionOff(); }});
-    expect_printed(filter,
-                   {"Projection: eac", "PanoramaWidth: 30", "Position: 1 2 3", "Tolerance: 3", "Lens: none"});
+    expect_printed(filter, {"Projection: eac", "PanoramaWidth: 30", "Position: 1 2 3", "Tolerance: 3",
+                            "Lens: none", "ProjectionAlpha: 0.25", "VerticalFieldOfView: 70"});
     filter->SetInputData(room());
     expect_executed_once(filter);
     expect_overridden<Filter>("vtkAnamorphPanoramaProjection");

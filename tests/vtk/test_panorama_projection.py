@@ -10,7 +10,7 @@ from vtkmodules.vtkFiltersSources import vtkPlaneSource
 os.environ.pop("DISPLAY", None)
 projection = anamorph.vtkAnamorphPanoramaProjection()
 for name, value in [("Projection", projection.CYLINDRICAL), ("PanoramaWidth", 1000), ("PanoramaHeight", 300),
-                    ("FieldOfView", 350.0), ("PanniniDistance", 0.5), ("Lens", "none"), ("Position", (1.0, 2.0, 3.0)),
+                    ("FieldOfView", 350.0), ("PanniniDistance", 0.5), ("ProjectionAlpha", 0.25), ("VerticalFieldOfView", 70.0), ("Lens", "none"), ("Position", (1.0, 2.0, 3.0)),
                     ("Direction", (1.0, 0.0, 0.0)), ("ViewUp", (0.0, 0.0, 1.0)), ("Tolerance", 0.5), ("Occlusion", False),
                     ("Picture", "a.png"), ("TimeBudget", 0.5)]:
     getattr(projection, "Set" + name)(value)

@@ -80,7 +80,8 @@ def odd_inputs_are_named_and_it_goes_on():
         view.SetInputDataObject(picture())
         assert errors_of(view) == "" and (pixels(view.GetOutput()) == seen(picture())).all()
     for name, said in (("Yaw", "yaw"), ("Pitch", "pitch"), ("Roll", "roll"), ("ViewAngle", "fov"), ("Tolerance", "tol"),
-                       ("FieldOfView", "srcfov"), ("PanniniDistance", "srcd")):
+                       ("FieldOfView", "srcfov"), ("PanniniDistance", "srcd"), ("VerticalFieldOfView", "srcvfov"),
+                       ("ProjectionAlpha", "srce")):
         view = view_of(picture())
         getattr(view, "Set" + name)(math.nan)
         assert said + "=nan: must be" in errors_of(view), name
@@ -162,6 +163,7 @@ def progress_rises_to_1_and_abort_leaves_nothing():
 def values_count_once_and_are_printed():
     view = view_of(picture())
     for name, value in (("Projection", 2), ("FieldOfView", 123.5), ("PanniniDistance", 0.25), ("Lens", "brown:k1=0.125"), ("Yaw", 11.5),
+                        ("VerticalFieldOfView", 90.5), ("ProjectionAlpha", 0.75), ("Keys", "filter=bicubic"),
                         ("Pitch", 12.5), ("Roll", 13.5), ("ViewAngle", 14.5), ("ViewSize", (15, 16)), ("Tolerance", 0.0625)):
         before = view.GetMTime()
         getattr(view, "Set" + name)(value)

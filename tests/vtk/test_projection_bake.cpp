@@ -226,6 +226,50 @@ TEST(VtkProjectionBake, LensesAndPanninisDistanceCount) {
     EXPECT_THAT(errors.text(), HasSubstr("thick"));
 }
 
+TEST(VtkProjectionBake, ProjectionsHaveTwoNumbersAndAHeight) {
+    // The double sphere, by the formula of Usenko and others, with numbers as calibrations have them.
+    const double xi = -0.25, alpha = 0.6;
+    const auto sphere = [&](double x, double y, double z) {
+        const double first = std::sqrt(x * x + y * y + z * z), moved = xi * first + z,
+                     second = std::sqrt(x * x + y * y + moved * moved);
+        return x / (alpha * second + (1 - alpha) * moved);
+    };
+    const auto bake = small_bake(wall(), coordinates(400, 400));
+    bake->SetProjection(vtkAnamorphPanoramaProjection::DOUBLE_SPHERE);
+    bake->SetFieldOfView(150);
+    bake->SetFade(0);
+    bake->SetPanniniDistance(xi);
+    bake->SetProjectionAlpha(alpha);
+    bake->Update();
+    const double half = 75 * kPi / 180, border = sphere(std::sin(half), 0, std::cos(half));
+    for (int i = 0; i < 40; ++i)
+        EXPECT_NEAR(bake->GetOutput()->GetScalarComponentAsDouble(i, 15, 0, 0),
+                    (sphere((i + 0.5) / 40 * 2 - 1, 1. / 30, 1) / border + 1) * 200, 1e-2)
+            << i;
+    // A whole sphere in a square: rows are half as far apart.
+    const auto squeezed = small_bake(wall(), coordinates(400, 400));
+    squeezed->SetFade(0);
+    squeezed->SetVerticalFieldOfView(180);
+    squeezed->Update();
+    for (int j = 0; j < 30; ++j) {
+        const double x = 1. / 40, y = (j + 0.5) / 30 * 2 - 1, lat = std::atan2(y, std::hypot(x, 1));
+        EXPECT_NEAR(squeezed->GetOutput()->GetScalarComponentAsDouble(20, j, 0, 1), 200 + lat / kPi * 400,
+                    1e-2)
+            << j;
+    }
+    Errors errors(bake);
+    const auto error = [&](double e, double vfov) {
+        errors.clear();
+        bake->SetProjectionAlpha(e);
+        bake->SetVerticalFieldOfView(vfov);
+        bake->Update();
+        return errors.text();
+    };
+    EXPECT_THAT(error(std::nan(""), 0), HasSubstr("panorama e=nan"));
+    EXPECT_THAT(error(1.01, 0), HasSubstr("panorama e=1.01: must be a number from 0 to 1"));
+    EXPECT_THAT(error(0.5, 361), HasSubstr("panorama vfov=361"));
+}
+
 TEST(VtkProjectionBake, HardTrianglesHarmNothing) {
     const auto picture = coordinates(100, 50);
     const auto wanted = baked(wall(), picture);
@@ -280,11 +324,13 @@ TEST(VtkProjectionBake, CountsModificationsExecutesOnceAndPrints) {
         bake,
         {[](Bake* b) { b->SetProjection(1); }, [](Bake* b) { b->SetFieldOfView(90); },
          [](Bake* b) { b->SetWidth(20); }, [](Bake* b) { b->SetHeight(10); }, [](Bake* b) { b->SetFade(3); },
-         [](Bake* b) { b->SetPanniniDistance(2); }, [](Bake* b) { b->SetLens("none"); },
+         [](Bake* b) { b->SetPanniniDistance(2); }, [](Bake* b) { b->SetProjectionAlpha(0.25); },
+         [](Bake* b) { b->SetVerticalFieldOfView(70); }, [](Bake* b) { b->SetLens("none"); },
          [](Bake* b) { b->SetMargin(2); }, [](Bake* b) { b->OcclusionOff(); }});
     bake->AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0);
-    expect_printed(bake, {"Projection: cylindrical", "NumberOfProjectors: 1", "Width: 20", "Margin: 2",
-                          "PanniniDistance: 2", "Lens: none"});
+    expect_printed(bake,
+                   {"Projection: cylindrical", "NumberOfProjectors: 1", "Width: 20", "Margin: 2",
+                    "PanniniDistance: 2", "ProjectionAlpha: 0.25", "VerticalFieldOfView: 70", "Lens: none"});
     bake->SetInputData(0, wall());
     bake->AddInputData(1, coordinates(100, 50));
     expect_executed_once(bake);

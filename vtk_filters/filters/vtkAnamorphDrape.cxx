@@ -63,7 +63,7 @@ constexpr int kMostLights = 1024;
 constexpr float kFar = 1e30f;  ///< the depth where nothing is seen
 constexpr anamorph::NumberRow kCoordinateRow{"coordinate", 0, -1e6, 1e6};
 
-const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal"};
+const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal", "coverage"};
 // The operation's words for the values of Filter, Shading and Scheme.
 constexpr std::array kFilters = {"nearest", "bilinear",    "bicubic",      "antialias",
                                  "pyramid", "summed_area", "sharp_bicubic"};
@@ -109,6 +109,8 @@ Drawn drawn_by(int style, int texture_type, int texture_components) {
             return {"Depth", VTK_FLOAT, 1};
         case vtkAnamorphDrape::NORMAL:
             return {"Normals", VTK_FLOAT, 3};
+        case vtkAnamorphDrape::COVERAGE:
+            return {"Coverage", VTK_FLOAT, 1};
         default:
             return {"Colors", texture_type, texture_components};
     }
@@ -129,6 +131,20 @@ vtkDataArray* array_of(vtkDataSet* data, const std::string& name) {
     return name.empty() ? data->GetPointData()->GetScalars() : data->GetPointData()->GetArray(name.c_str());
 }
 
+/// The texture of the far side; none where there is none. Throws anamorph::Error.
+std::optional<anamorph_vtk::ImageTexture> back_of(vtkImageData* image,
+                                                  const anamorph_vtk::ImageTexture& front) {
+    if (!image) return {};
+    std::optional<anamorph_vtk::ImageTexture> back(std::in_place, image, image->GetPointData()->GetScalars(),
+                                                   "the input Back");
+    const int own = back->view().channels, of_front = front.view().channels;
+    if (own != of_front)
+        throw Error("Back", std::to_string(own) + " components",
+                    "must have as many as the texture, " + std::to_string(of_front));
+    if (back->type() != front.type()) throw Error("Back", "another type", "must be of the texture's type");
+    return back;
+}
+
 /// A drape, by patches and blocks or by the machine, ready to draw.
 class ReadyDrape {
   public:
@@ -147,9 +163,9 @@ class ReadyDrape {
     }
 
     /// Draws the pixels of a box. False where the texture cannot be read.
-    bool draw(const anamorph::Source& texture, const anamorph::Box& box, const anamorph::ImageView& view,
-              const anamorph::ParallelFor& parallel_for) const {
-        return m_drape ? m_drape->draw(&texture, box, view, parallel_for)
+    bool draw(const anamorph::Source& texture, const anamorph::Source* back, const anamorph::Box& box,
+              const anamorph::ImageView& view, const anamorph::ParallelFor& parallel_for) const {
+        return m_drape ? m_drape->draw(&texture, box, view, parallel_for, nullptr, back)
                        : m_by_machine->draw({&texture}, box, view, parallel_for);
     }
     /// Adds what the machine says of its picture as fields, and returns the largest error.
@@ -220,7 +236,7 @@ const std::vector<vtkAnamorphDrape::Number>& vtkAnamorphDrape::Numbers() {
 }
 
 vtkAnamorphDrape::vtkAnamorphDrape() {
-    this->SetNumberOfInputPorts(4);
+    this->SetNumberOfInputPorts(5);
     this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                  vtkDataSetAttributes::SCALARS);
     // 0 stands for what has no default of its own.
@@ -288,7 +304,8 @@ vtkTypeBool vtkAnamorphDrape::ProcessRequest(vtkInformation* request, vtkInforma
 }
 
 int vtkAnamorphDrape::FillInputPortInformation(int port, vtkInformation* info) {
-    constexpr const char* kTypes[] = {"vtkImageData", "vtkStructuredGrid", "vtkImageData", "vtkTable"};
+    constexpr const char* kTypes[] = {"vtkImageData", "vtkStructuredGrid", "vtkImageData", "vtkTable",
+                                      "vtkImageData"};
     info->Set(INPUT_REQUIRED_DATA_TYPE(), kTypes[port]);
     if (port == 1) info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
     info->Set(INPUT_IS_OPTIONAL(), 1);  // has_inputs() tells of the first in our own words
@@ -390,6 +407,7 @@ anamorph::surface::DrapeOptions vtkAnamorphDrape::Options(const anamorph::Parame
     options.overlap = values.number("overlap");
     options.filter = anamorph::rows::chosen<anamorph::Filter>(values, "filter");
     if (this->Style == TEXTURE_COORDINATES) options.output = anamorph::Output::stmap;
+    if (this->Style == COVERAGE) options.own = anamorph::surface::DrapeOutput::coverage;
     if (this->Style == DEPTH) options.own = anamorph::surface::DrapeOutput::depth;
     if (this->Style == NORMAL) options.own = anamorph::surface::DrapeOutput::normal;
     options.lighting = {
@@ -446,7 +464,7 @@ int vtkAnamorphDrape::RequestInformation(vtkInformation*, vtkInformationVector**
             drawn_by(this->Style, known ? texture->Get(vtkDataObject::FIELD_ARRAY_TYPE()) : -1,
                      known ? texture->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) : -1);
         vtkDataObject::SetPointDataActiveScalarInfo(output, drawn.type, drawn.components);
-        anamorph_vtk::tell_times({inputs, 4}, output);
+        anamorph_vtk::tell_times({inputs, 5}, output);
     };
     return anamorph_vtk::guarded(this, tell, {vtkDataObject::GetData(outputs)});
 }
@@ -476,7 +494,7 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
             int asked[6];
             outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT(), asked);
             this->Draw(inputs, asked, output);
-            anamorph_vtk::hand_over_time({inputs, 4}, output);
+            anamorph_vtk::hand_over_time({inputs, 5}, output);
         } catch (const Error& error) {
             throw anamorph_vtk::of_property(error, other_names());
         }
@@ -485,8 +503,9 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
 }
 
 /// The machine draws the bare picture. Throws anamorph::Error.
-void vtkAnamorphDrape::CheckMachine(const anamorph::surface::DrapeOptions& options) const {
+void vtkAnamorphDrape::CheckMachine(const anamorph::surface::DrapeOptions& options, bool has_back) const {
     if (this->Scheme != HARDWARE) return;
+    if (has_back) throw Error("Back", "given", "must not be connected with Scheme=hardware");
     if (options.own != anamorph::surface::DrapeOutput::shared)
         throw Error("Style", kStyles[this->Style],
                     "must be color or texture coordinates with Scheme=hardware");
@@ -506,8 +525,11 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
                                             this->GetInputArrayToProcess(0, inputs), "the texture");
     const int channels = pixels.view().channels;
     const anamorph::ParameterValues values = this->Values();
-    const anamorph::surface::DrapeOptions options = this->Options(values, channels);
-    this->CheckMachine(options);
+    anamorph::surface::DrapeOptions options = this->Options(values, channels);
+    const std::optional<anamorph_vtk::ImageTexture> far_side =
+        back_of(vtkImageData::GetData(inputs[4]), pixels);
+    if (far_side) options.back = far_side->size();
+    this->CheckMachine(options, far_side.has_value());
     anamorph_vtk::Execution execution(this);
     execution.progress(0.01);
     const anamorph::DrapeSurfaces& surfaces =
@@ -528,9 +550,12 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
 
     const anamorph::MemorySource base(pixels.view(), alpha_of(channels));
     const anamorph::Pyramid source(base);
+    std::optional<anamorph::MemorySource> back_base;
+    std::optional<anamorph::Pyramid> back;
+    if (far_side) back.emplace(back_base.emplace(far_side->view(), alpha_of(channels)));
     const anamorph::Box box{extent[0], screen.height - 1 - extent[3], extent[1] + 1,
                             screen.height - extent[2]};
-    if (!drape.draw(source, box,
+    if (!drape.draw(source, back ? &*back : nullptr, box,
                     turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)),
                                 anamorph_vtk::pixel_type(array, "the texture"), box.width(), box.height(),
                                 drawn.components),

@@ -129,7 +129,9 @@ void vtkAnamorphPanoramaProjection::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "PanoramaWidth: " << this->PanoramaWidth << "\n"
        << indent << "PanoramaHeight: " << this->PanoramaHeight << "\n"
        << indent << "FieldOfView: " << this->FieldOfView << "\n"
+       << indent << "VerticalFieldOfView: " << this->VerticalFieldOfView << "\n"
        << indent << "PanniniDistance: " << this->PanniniDistance << "\n"
+       << indent << "ProjectionAlpha: " << this->ProjectionAlpha << "\n"
        << indent << "Lens: " << (this->Lens ? this->Lens : "(none)") << "\n";
     write("Position", this->Position);
     write("Direction", this->Direction);
@@ -281,12 +283,13 @@ double vtkAnamorphPanoramaProjection::Run::scene_size() const {
 }
 
 void vtkAnamorphPanoramaProjection::Run::make_painter() {
-    anamorph::kPanniniDistanceRow.check(filter.PanniniDistance, "panorama d");
-    const auto lens =
-        filter.Lens && *filter.Lens ? anamorph::LensModel::parse(filter.Lens) : anamorph::LensModel{};
-    const anamorph::Chart panorama(anamorph::kProjections[filter.Projection], size.width, size.height,
-                                   filter.FieldOfView, anamorph::PixelSpacing::edges, "panorama ",
-                                   filter.PanniniDistance, lens);
+    const anamorph::ThrownChart thrown{anamorph::kProjections[filter.Projection],
+                                       filter.FieldOfView,
+                                       filter.VerticalFieldOfView,
+                                       filter.PanniniDistance,
+                                       filter.ProjectionAlpha,
+                                       filter.Lens ? filter.Lens : ""};
+    const anamorph::Chart panorama = thrown.of({size.width, size.height});
     const anamorph::Projector projector(
         panorama, {vector(filter.Position), vector(filter.Direction), vector(filter.ViewUp)});
     anamorph::ProjectionOptions options;

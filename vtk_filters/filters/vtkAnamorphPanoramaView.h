@@ -7,9 +7,11 @@
  * operation pano of the core, within Tolerance of the exact texels, which is proven. The panorama is a vtkImageData of one slice,
  * its array 1 to 4 components of unsigned char, unsigned short or float, of which the second or fourth is alpha; the output has
  * an array "Colors" of the same type. Rows go up, as in all of VTK's images. Any part of the output, and any number of threads,
- * gives the same pixels.
+ * gives the same pixels. Keys has whatever else a recipe of the operation may say: another projection of the view, how the
+ * panorama's camera was held, parts of panoramas, filters, overscan, coverage.
  *
- * Errors name the core's parameters: srcfov, srcd, srclens (FieldOfView, PanniniDistance, Lens).
+ * Errors name the core's parameters: srcfov, srcvfov, srcd, srce, srclens (FieldOfView, VerticalFieldOfView, PanniniDistance,
+ * ProjectionAlpha, Lens).
  */
 #ifndef vtkAnamorphPanoramaView_h
 #define vtkAnamorphPanoramaView_h
@@ -43,7 +45,17 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * The distance d of the Pannini projection, which other projections do not read. Default: 1.
+     * The vertical field of view of the panorama, in degrees, where its texels are not square, as of a whole sphere in a square
+     * (180); 0: square texels. Default: 0.
+     */
+    vtkSetMacro(VerticalFieldOfView, double);
+    vtkGetMacro(VerticalFieldOfView, double);
+    ///@}
+
+    ///@{
+    /**
+     * The number d of projections that have one, -0.999 to 1000, which others do not read: the distance of the Pannini
+     * projection, xi of unified and double_sphere, beta of eucm. Default: 1.
      */
     vtkSetMacro(PanniniDistance, double);
     vtkGetMacro(PanniniDistance, double);
@@ -51,8 +63,16 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * The distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4
-     * or division. Default: none.
+     * The number alpha of double_sphere and eucm, 0 to 1, which others do not read. Default: 0.5.
+     */
+    vtkSetMacro(ProjectionAlpha, double);
+    vtkGetMacro(ProjectionAlpha, double);
+    ///@}
+
+    ///@{
+    /**
+     * The distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4,
+     * division, poly or ocam. Default: none.
      */
     vtkSetStringMacro(Lens);
     vtkGetStringMacro(Lens);
@@ -95,6 +115,18 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
     vtkGetMacro(Tolerance, double);
     ///@}
 
+    ///@{
+    /**
+     * Further keys of a recipe .pano, "key=value&key=value", as in "srcpitch=-3&filter=sharp_bicubic&overscan=5%&alpha=1" or
+     * "vfov=40". Where a key says what a property says too, the key counts; with to, fov, vfov or focal ViewAngle does not. Not
+     * of those that name files, nor of parts, levels, tiles and color spaces. What lies beyond the view by overscan has indices
+     * below 0, or beyond ViewSize. With alpha=1 the output has one component more, where the panorama has no alpha; with output
+     * it is float, and its array has the name of that output. Default: none.
+     */
+    vtkSetStringMacro(Keys);
+    vtkGetStringMacro(Keys);
+    ///@}
+
     /**
      * The largest proven bound of that distance in the view that was drawn last, in texels.
      */
@@ -112,11 +144,16 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
     vtkAnamorphPanoramaView(const vtkAnamorphPanoramaView&) = delete;
     void operator=(const vtkAnamorphPanoramaView&) = delete;
 
+    struct Source;
+    struct View;
+    /// The view of a panorama as it is known.
+    View MakeView(const Source& panorama) const;
     void Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output);
 
     int Projection = vtkAnamorphPanoramaProjection::EQUIRECTANGULAR;
-    double FieldOfView = 0, PanniniDistance = 1;
+    double FieldOfView = 0, VerticalFieldOfView = 0, PanniniDistance = 1, ProjectionAlpha = 0.5;
     char* Lens = nullptr;
+    char* Keys = nullptr;
     double Yaw = 0, Pitch = 0, Roll = 0, ViewAngle = 90;
     int ViewSize[2] = {500, 500};
     double Tolerance = 0.01, MaxError = 0;

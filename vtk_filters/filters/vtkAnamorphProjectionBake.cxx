@@ -191,11 +191,13 @@ void vtkAnamorphProjectionBake::Run::take_pictures() {
         bytes = bytes && scalars->GetDataType() == VTK_UNSIGNED_CHAR;
         int size[3];
         image->GetDimensions(size);
-        anamorph::kPanniniDistanceRow.check(filter.PanniniDistance, "panorama d");
-        const anamorph::Chart chart(
-            anamorph::kProjections[filter.Projection], size[0], size[1], filter.FieldOfView,
-            anamorph::PixelSpacing::edges, "panorama ", filter.PanniniDistance,
-            filter.Lens && *filter.Lens ? anamorph::LensModel::parse(filter.Lens) : anamorph::LensModel{});
+        const anamorph::ThrownChart thrown{anamorph::kProjections[filter.Projection],
+                                           filter.FieldOfView,
+                                           filter.VerticalFieldOfView,
+                                           filter.PanniniDistance,
+                                           filter.ProjectionAlpha,
+                                           filter.Lens ? filter.Lens : ""};
+        const anamorph::Chart chart = thrown.of({size[0], size[1]});
         pixels.push_back(pixels_of(image, scalars));
         pictures.push_back({anamorph::Projector(chart, poses[i]), nullptr});
     }
@@ -365,7 +367,9 @@ void vtkAnamorphProjectionBake::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "NumberOfProjectors: " << this->Poses->all.size() << "\n"
        << indent << "Projection: " << anamorph::name_of(anamorph::kProjections[this->Projection]) << "\n"
        << indent << "FieldOfView: " << this->FieldOfView << "\n"
+       << indent << "VerticalFieldOfView: " << this->VerticalFieldOfView << "\n"
        << indent << "PanniniDistance: " << this->PanniniDistance << "\n"
+       << indent << "ProjectionAlpha: " << this->ProjectionAlpha << "\n"
        << indent << "Lens: " << (this->Lens ? this->Lens : "(none)") << "\n"
        << indent << "Width: " << this->Width << "\n"
        << indent << "Height: " << this->Height << "\n"

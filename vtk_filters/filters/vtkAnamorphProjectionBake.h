@@ -65,7 +65,17 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * The distance d of the Pannini projection, which other projections do not read. Default: 1.
+     * The vertical field of view of the panorama, in degrees, where its texels are not square, as of a whole sphere in a square
+     * (180); 0: square texels. Default: 0.
+     */
+    vtkSetMacro(VerticalFieldOfView, double);
+    vtkGetMacro(VerticalFieldOfView, double);
+    ///@}
+
+    ///@{
+    /**
+     * The number d of projections that have one, -0.999 to 1000, which others do not read: the distance of the Pannini
+     * projection, xi of unified and double_sphere, beta of eucm. Default: 1.
      */
     vtkSetMacro(PanniniDistance, double);
     vtkGetMacro(PanniniDistance, double);
@@ -73,8 +83,16 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * The distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4
-     * or division. Default: none.
+     * The number alpha of double_sphere and eucm, 0 to 1, which others do not read. Default: 0.5.
+     */
+    vtkSetMacro(ProjectionAlpha, double);
+    vtkGetMacro(ProjectionAlpha, double);
+    ///@}
+
+    ///@{
+    /**
+     * The distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4,
+     * division, poly or ocam. Default: none.
      */
     vtkSetStringMacro(Lens);
     vtkGetStringMacro(Lens);
@@ -161,7 +179,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     std::unique_ptr<Projectors> Poses;
     int Projection = 0, Width = 1024, Height = 1024;
-    double FieldOfView = 0, PanniniDistance = 1, Fade = 32, Margin = 1;
+    double FieldOfView = 0, PanniniDistance = 1, VerticalFieldOfView = 0, ProjectionAlpha = 0.5, Fade = 32,
+           Margin = 1;
     char* Lens = nullptr;
     bool Occlusion = true;
     vtkSmartPointer<vtkMultiProcessController> Controller;

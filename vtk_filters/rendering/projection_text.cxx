@@ -293,13 +293,15 @@ ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphPro
     if (!image || image->GetNumberOfPoints() == 0 || !image->GetPointData()->GetScalars())
         throw anamorph::Error("Panorama", "none", "must be a texture with an image as its input");
     ThrownPanorama thrown;
-    thrown.projection = projector.GetProjection();
+    thrown.chart = {anamorph::kProjections[projector.GetProjection()],
+                    projector.GetFieldOfView(),
+                    projector.GetVerticalFieldOfView(),
+                    projector.GetPanniniDistance(),
+                    projector.GetProjectionAlpha(),
+                    projector.GetLens() ? projector.GetLens() : ""};
     thrown.width = image->GetDimensions()[0];
     thrown.height = image->GetDimensions()[1];
-    thrown.fov = projector.GetFieldOfView();
-    thrown.d = projector.GetPanniniDistance();
     thrown.fade = projector.GetFade();
-    if (const char* lens = projector.GetLens()) thrown.lens = lens;
     if (projector.GetOccluders()) thrown.shadow_size = projector.GetShadowSize();
     thrown.mode = shader.GetMode();
     if (thrown.mode == Shader::DIRECT) return thrown;
@@ -317,10 +319,7 @@ anamorph::ProjectorPose pose_of(vtkAnamorphPanoramaProjector& projector) {
 }
 
 PreparedPanorama::PreparedPanorama(const ThrownPanorama& panorama)
-    : thrown(panorama),
-      chart(anamorph::kProjections[panorama.projection], panorama.width, panorama.height, panorama.fov,
-            anamorph::PixelSpacing::edges, "panorama ", panorama.d,
-            panorama.lens.empty() ? anamorph::LensModel{} : anamorph::LensModel::parse(panorama.lens)) {
+    : thrown(panorama), chart(panorama.chart.of({panorama.width, panorama.height})) {
     if (thrown.mode == Shader::DIRECT) return;
     const bool residual = thrown.mode == Shader::RESIDUAL;
     if (residual && chart.pieces().size() > 1)

@@ -10,6 +10,7 @@
 #include "anamorph/machine/bump_table.h"
 #include "anamorph/machine/bump_unit.h"
 #include "anamorph/projector/projection_groups.h"
+#include "anamorph/projector/projector_rows.h"
 
 class vtkAnamorphPanoramaProjector;
 class vtkAnamorphProjectionShader;
@@ -18,10 +19,11 @@ namespace anamorph_vtk {
 
 /// The facts that the text depends on: of a projector, all but its pose; and how it is thrown.
 struct ThrownPanorama {
-    int projection = 0, width = 0, height = 0;
+    anamorph::ThrownChart chart;
+    int width = 0, height = 0;
     int components = 4;  ///< components of the texture as it was loaded
-    double fov = 0, d = 1, fade = 0;
-    std::string lens, machine;
+    double fade = 0;
+    std::string machine;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
     int shadow_size = 0;  ///< 0: nothing is hidden
     int most_rows = 0;    ///< of the window's textures; 0: not known

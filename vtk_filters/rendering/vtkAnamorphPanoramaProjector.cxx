@@ -30,7 +30,9 @@ void vtkAnamorphPanoramaProjector::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "Panorama: " << this->Panorama.Get() << "\n"
        << indent << "Projection: " << this->GetProjectionName() << "\n"
        << indent << "FieldOfView: " << this->FieldOfView << "\n"
+       << indent << "VerticalFieldOfView: " << this->VerticalFieldOfView << "\n"
        << indent << "PanniniDistance: " << this->PanniniDistance << "\n"
+       << indent << "ProjectionAlpha: " << this->ProjectionAlpha << "\n"
        << indent << "Lens: " << (this->Lens ? this->Lens : "(none)") << "\n";
     write("Position", this->Position);
     write("Direction", this->Direction);

@@ -56,7 +56,17 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * The distance d of the Pannini projection, which other projections do not read. Default: 1.
+     * The vertical field of view of the panorama, in degrees, where its texels are not square, as of a whole sphere in a square
+     * (180); 0: square texels. Default: 0.
+     */
+    vtkSetMacro(VerticalFieldOfView, double);
+    vtkGetMacro(VerticalFieldOfView, double);
+    ///@}
+
+    ///@{
+    /**
+     * The number d of projections that have one, -0.999 to 1000, which others do not read: the distance of the Pannini
+     * projection, xi of unified and double_sphere, beta of eucm. Default: 1.
      */
     vtkSetMacro(PanniniDistance, double);
     vtkGetMacro(PanniniDistance, double);
@@ -64,8 +74,16 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * The distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4
-     * or division. Default: none.
+     * The number alpha of double_sphere and eucm, 0 to 1, which others do not read. Default: 0.5.
+     */
+    vtkSetMacro(ProjectionAlpha, double);
+    vtkGetMacro(ProjectionAlpha, double);
+    ///@}
+
+    ///@{
+    /**
+     * The distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4, kb4,
+     * division, poly or ocam. Default: none.
      */
     vtkSetStringMacro(Lens);
     vtkGetStringMacro(Lens);
@@ -157,7 +175,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     vtkSmartPointer<vtkAlgorithmOutput> Occluders;
     vtkSmartPointer<vtkTrivialProducer> OccluderData;
     int Projection = 0, Shadows = SHADOW_MAP, ShadowSize = 1024;
-    double FieldOfView = 0, PanniniDistance = 1;
+    double FieldOfView = 0, VerticalFieldOfView = 0, PanniniDistance = 1, ProjectionAlpha = 0.5;
     char* Lens = nullptr;
     double Position[3] = {0, 0, 0}, Direction[3] = {0, 0, -1}, ViewUp[3] = {0, 1, 0};
     double Fade = 0;

@@ -124,7 +124,9 @@ CardView::CardView(const CardPicture& picture, bool hdr)
     m_projector->SetPanorama(m_texture);
     m_projector->SetProjection(static_cast<int>(m_chart.projection()));
     m_projector->SetFieldOfView(m_chart.fov());
-    m_projector->SetPanniniDistance(picture.d);
+    m_projector->SetVerticalFieldOfView(m_chart.vertical().fov);
+    m_projector->SetPanniniDistance(m_chart.distance().d);
+    m_projector->SetProjectionAlpha(m_chart.distance().e);
     m_projector->SetLens(m_chart.lens() ? m_chart.lens()->model().text().c_str() : nullptr);
     m_projector->SetOrientation(picture.held.yaw, picture.held.pitch, picture.held.roll);
     m_shader->AddProjector(m_projector);

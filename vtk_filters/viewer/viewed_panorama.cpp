@@ -115,13 +115,15 @@ CardPicture ViewedPanorama::card_chart() const {
         const anamorph::ConcentricStack stack = anamorph::read_concentric_stack(values);
         const anamorph::Chart chart = anamorph::read_slit_panorama(values, facts, stack.circles);
         check_target(anamorph::read_target_chart(values, chart));
-        return {chart, {}, 1, 0, {}, stack};
+        return {chart, {}, 0, {}, stack};
     }
     const anamorph::ReprojectRequest request = anamorph::read_reproject_request(values, facts);
     check_target(request.target);
     if (request.source.chart.spacing() != anamorph::PixelSpacing::edges)
         refuse_card("pixels from centre to centre");
-    return {request.source.chart, request.held, values.number("srcd"), 0, {}};
+    if (request.source.chart.padding().pixels > 0) refuse_card("images with padding");
+    if (request.source.chart.vertical().horizon) refuse_card("parts of panoramas");
+    return {request.source.chart, request.held, 0, {}};
 }
 
 CardPicture ViewedPanorama::card_picture() const {

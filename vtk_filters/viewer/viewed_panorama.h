@@ -31,7 +31,6 @@ struct Direction {
 struct CardPicture {
     anamorph::Chart chart;
     anamorph::Orientation held;  ///< orientation of the panorama
-    double d = 1;                ///< distance of Pannini's projection
     int channels = 0;
     std::vector<float> pixels;  ///< rows from the top
     /// The circles whose panoramas stand one above the other, of which `chart` is that of one.

@@ -38,6 +38,8 @@ class FlatPictures final : public Pictures {
         picture.size = *size;
         picture.display = m_request.display;
         picture.add_overscan(overscan);
+        picture.keeps_format =
+            level == 0 && picture.shows({m_request.source.width(), m_request.source.height()});
         picture.pixels = pixels_of(m_request.output);
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
         if (m_request.says)

@@ -256,6 +256,7 @@ class Morphs final : public Pictures {
         PictureRequest picture;
         picture.size = *size;
         picture.add_overscan(overscan);
+        picture.keeps_format = level == 0 && picture.shows(m_request.pictures[0]);
         picture.pixels = pixels_of(options.output);
         picture.adds_alpha = options.adds_alpha;
         if (!request.machine) picture.says = {{"anamorph:tol", options.tol}};

@@ -105,6 +105,8 @@ struct PictureRequest {
     /// The display window, in pixels of the picture, which is then the data window; where there is none they are the same.
     /// Such a picture has one level: on coarser ones its windows would not lie on pixels.
     std::optional<Box> display = {};
+    /// Is the display window that of the first source, so that it is to stand where that one's does?
+    bool keeps_format = false;
     PixelKind pixels = PixelKind::color;
     std::vector<std::string> channels;  ///< names of the channels of colour that no source says: as float
     Attributes says;                    ///< attributes known beforehand: "anamorph:tol", the projection
@@ -120,6 +122,8 @@ struct PictureRequest {
 
     /// The display window, whether it is another or not.
     Box shown() const { return display.value_or(Box{0, 0, size.width, size.height}); }
+    /// Is the display window of this size?
+    bool shows(const Size& of) const { return shown().width() == of.width && shown().height() == of.height; }
     /// The key that made the picture larger than its display window, or its size.
     std::string sized_by = "size";
 

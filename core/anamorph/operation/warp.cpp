@@ -244,6 +244,7 @@ class Warps final : public Pictures {
         PictureRequest picture;
         picture.size = *size;
         picture.display = m_request.display;
+        picture.keeps_format = level == 0 && picture.shows(m_request.source);
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         picture.adds_alpha = request.options.adds_alpha;
         if (!request.machine) picture.says = {{"anamorph:tol", request.options.tol}};

@@ -143,6 +143,12 @@ void vtkAnamorphPanoramaRepresentation::SetPanoramaFieldOfView(double degrees) {
     this->Projector->SetFieldOfView(degrees);
 }
 
+void vtkAnamorphPanoramaRepresentation::SetPanoramaVerticalFieldOfView(double degrees) {
+    this->Projector->SetVerticalFieldOfView(degrees);
+}
+void vtkAnamorphPanoramaRepresentation::SetPanoramaProjectionAlpha(double alpha) {
+    this->Projector->SetProjectionAlpha(alpha);
+}
 void vtkAnamorphPanoramaRepresentation::SetPanoramaPanniniDistance(double d) {
     this->Projector->SetPanniniDistance(d);
 }

@@ -37,7 +37,9 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     /** Properties of the vtkAnamorphPanoramaProjector. */
     void SetPanoramaProjection(int projection);
     void SetPanoramaFieldOfView(double degrees);
+    void SetPanoramaVerticalFieldOfView(double degrees);
     void SetPanoramaPanniniDistance(double d);
+    void SetPanoramaProjectionAlpha(double alpha);
     void SetPanoramaLens(const char* lens);
     void SetProjectorPosition(double x, double y, double z);
     void SetProjectorDirection(double x, double y, double z);
