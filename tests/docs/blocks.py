@@ -107,6 +107,7 @@ OTHERS = [
     Other("python", "deform.SetDepth(", "vtk", "depths"),
     Other("python", "deform.AnchorDeformation(", "vtk", "anchor"),
     Other("python", "import vtkAnamorphDeformImage\n", "vtk", "image"),
+    Other("python", "import vtkAnamorphBlendShapeWriter\n", "vtk", "writer"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),
@@ -114,6 +115,7 @@ OTHERS = [
     Other("python", 'SetRepresentationType("Ellipsoids")', "paraview", "ellipsoids"),
     Other("python", "EllipsoidTextures, ", "paraview", "textures"),
     Other("python", 'SetRepresentationType("Panorama")', "paraview", "panorama"),
+    Other("python", 'SaveData("face.glb"', "paraview", "save"),
     Other("python", "LoadState(", "paraview", "state"),
 ]
 FIRST_LINES = [  # of blocks without a word about their language

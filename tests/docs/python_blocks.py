@@ -75,6 +75,15 @@ def check_image():
     assert before.shape == after.shape and 0 < (before != after).sum() < before.size and image.GetNumberOfFailures() == 0
 
 
+def check_writer():
+    base, smile, frown = (vtkSphereSource() for _ in range(3))
+    smile.SetRadius(0.75)
+    writer = run("writer", {"base": base, "smile": smile, "frown": frown})["writer"]
+    assert writer.GetErrorCode() == 0 and writer.GetMaxError() < 1e-7, writer
+    with open("face.glb", "rb") as file:
+        assert b'"targetNames":["smile","shape 2"]' in file.read()
+
+
 def check_project():
     scene = vtkSphereSource()
     scene.SetRadius(5)
@@ -108,7 +117,7 @@ def check_mapper():
     assert image.GetOutput().GetNumberOfPoints() > 0
 
 
-checks = {"deform": check_deform, "image": check_image, "project": check_project, "shader": check_shader, "mapper": check_mapper}
+checks = {"deform": check_deform, "image": check_image, "writer": check_writer, "project": check_project, "shader": check_shader, "mapper": check_mapper}
 for check in checks.values():
     check()
 assert set(TEXT) == {*checks, "depths", "anchor", "textures"}, TEXT.keys()

@@ -49,7 +49,7 @@ LEAST_ALONE = {"SelectedDeformation": 0, "BaseIndex": 0, "Resolution": 0}
 NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
             for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}
 # Proxies with fewer numbers than others: of these defaults, ends of ranges, and parameters.
-FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphSplatReader": (0, 0, 1)}
+FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphBlendShapeWriter": (3, 2, 6), "AnamorphSplatReader": (0, 0, 1)}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider for what has two ends, of which none can be dragged over so much. Ends beyond this are left to the filter.
@@ -247,6 +247,11 @@ def with_input(cls):
         with open("shape.obj", "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         new.AddFileName("shape.obj")
+    elif cls is anamorph.vtkAnamorphBlendShapeWriter:
+        plane = vtkPlaneSource()
+        plane.Update()
+        new.AddInputData(plane.GetOutput())
+        new.SetFileName("plane.glb")
     elif cls is anamorph.vtkAnamorphSplatReader:
         with open("splats.ply", "w") as file:
             file.write(surfaces.splats_head(0))
@@ -344,7 +349,10 @@ for group, element in found:
     check_documentation(element)
     if element.get("base_proxyname") or not hasattr(anamorph, element.get("class") or ""):
         continue
-    assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
+    if group == "writers":  # Save Data offers them
+        assert element.find("Hints/WriterFactory").get("extensions"), name
+    else:
+        assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
     compared, own = check_defaults(element), check_parameters(element)
     least_compared, least_ends, least_own = FEW.get(name, (4, 2, 4))
     assert compared >= least_compared and own >= least_own, (name, compared, own)
