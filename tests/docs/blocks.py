@@ -111,6 +111,7 @@ OTHERS = [
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),
+    Other("python", "vtkLabeledDataMapper()", "vtk", "labels"),
     Other("python", "mapper.AddTexture(", "vtk", "textures"),
     Other("python", 'SetRepresentationType("Ellipsoids")', "paraview", "ellipsoids"),
     Other("python", "EllipsoidTextures, ", "paraview", "textures"),

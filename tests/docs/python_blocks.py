@@ -109,6 +109,8 @@ def check_mapper():
     shutil.copy("examples/figures/walker.nudes", "walker.nudes")
     names = run("mapper", {})
     assert (drawn(names["actor"]).sum(1) > 0).sum() > 200, "no walker is seen"
+    run("labels", names)
+    assert names["mapper"].GetStyle() == names["mapper"].OCTANT and names["renderer"].GetActors2D().GetNumberOfItems() == 1
     texture, image = vtkTexture(), names["anamorph"].vtkAnamorphFigureImage()
     texture.SetInputData(red_picture())
     run("textures", {**names, "texture": texture, "image": image, "picture": red_picture()})
@@ -120,4 +122,4 @@ def check_mapper():
 checks = {"deform": check_deform, "image": check_image, "writer": check_writer, "project": check_project, "shader": check_shader, "mapper": check_mapper}
 for check in checks.values():
     check()
-assert set(TEXT) == {*checks, "depths", "anchor", "textures"}, TEXT.keys()
+assert set(TEXT) == {*checks, "depths", "anchor", "labels", "textures"}, TEXT.keys()
