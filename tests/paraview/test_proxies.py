@@ -333,6 +333,9 @@ def check_ranges(element):
     return ends
 
 
+folder = os.environ["ANAMORPH_SOURCE_DIR"] + "/plugins/paraview/anamorph/"
+icons = {file.get("alias") for file in xml.parse(folder + "anamorph.qrc").getroot().iter("file")}
+assert icons == set(os.listdir(folder + "icons")), icons
 (rows, menus), compared_rows = core_rows(), set()
 found = list(proxies())
 assert len(found) >= 4, found
@@ -353,6 +356,8 @@ for group, element in found:
         assert element.find("Hints/WriterFactory").get("extensions"), name
     else:
         assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
+        icon = element.find("Hints/ShowInMenu").get("icon")
+        assert icon.startswith(":/anamorph/") and icon[len(":/anamorph/"):] in icons, (name, icon)
     compared, own = check_defaults(element), check_parameters(element)
     least_compared, least_ends, least_own = FEW.get(name, (4, 2, 4))
     assert compared >= least_compared and own >= least_own, (name, compared, own)
