@@ -2,9 +2,11 @@
 # host: pvpython
 """Every proxy of the plugin can be made; every property is documented, has the default of the C++ class and the range that
 it takes, both those of the core's rows of numbers where it has one; every parameter of a class is a property."""
+import contextlib
 import glob
 import os
 import re
+import sqlite3
 import subprocess
 import xml.etree.ElementTree as xml
 
@@ -367,5 +369,11 @@ for group, element in found:
     ends = check_ranges(element)
     assert ends >= least_ends, (name, ends)
     print(name, ":", compared, "defaults,", own, "parameters,", ends, "ends of ranges")
+# ParaView's help has a page of each, where Qt's tools made any.
+for path in glob.glob(os.environ["ANAMORPH_BUILD_DIR"] + "/plugins/paraview/anamorph/paraview_help/*.qch"):
+    with contextlib.closing(sqlite3.connect(path)) as pages:
+        names = {row[0] for row in pages.execute("SELECT Name FROM FileNameTable")}
+    wanted = {f"{group}.{element.get('name')}.html" for group, element in found if group in ("sources", "filters", "writers")}
+    assert len(wanted) > 12 and wanted <= names, wanted - names
 wanted_rows = (set(rows) | set(menus)) - IN_TABLES - NOT_OFFERED
 assert compared_rows == wanted_rows, compared_rows ^ wanted_rows
