@@ -14,6 +14,9 @@
 // the normals. points: the same of DeformedPoints, at once. grid_edit, points_edit: the same after one bump that reaches 250 to
 // 300 points has changed. Errors are those of a component of a normal.
 //
+// Case depth: the same plane as a sheet that rises and falls, and 50 bumps with depth; frames: these with frames of their own. double: the
+// plain loop over (u, v, w). points, points_edit: as before.
+//
 // A blend of 10 shapes of as many points, weights from -0.3 to 0.4. double: the plain loop. blend: inbetween.
 // regions: inbetween_from_base with a mask for every other shape. memory: as many bytes copied as blend reads
 // and writes.
@@ -230,6 +233,112 @@ void run_list(const Settings& settings, Report& report, const std::string& name,
         name, side, points, settings, contenders, [&](std::size_t k) { return exact[k]; }, report);
 }
 
+/// A bump's own coordinates, in extents: R^T (p - c) / a, R of a quaternion (w, x, y, z) as in every textbook.
+template <class Real>
+class OwnCoordinates {
+  public:
+    explicit OwnCoordinates(const Deformation& d) : m_center{d.center.x, d.center.y, d.center_w} {
+        const Real q[4] = {static_cast<Real>(d.orientation.x), static_cast<Real>(d.orientation.y),
+                           static_cast<Real>(d.orientation.z), static_cast<Real>(d.orientation.w)};
+        const Real length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+        const Real w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
+        const Real turn[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                                 {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                                 {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+        const Real extents[3] = {static_cast<Real>(d.extent.x), static_cast<Real>(d.extent.y),
+                                 static_cast<Real>(d.extent_w)};
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j) m_rows[k][j] = turn[j][k] / extents[k];
+    }
+
+    /// The square of their distance from 0.
+    Real squared(const Real (&p)[3]) const {
+        Real sum = 0;
+        for (const auto& row : m_rows) {
+            const Real own =
+                row[0] * (p[0] - m_center[0]) + row[1] * (p[1] - m_center[1]) + row[2] * (p[2] - m_center[2]);
+            sum += own * own;
+        }
+        return sum;
+    }
+
+  private:
+    Real m_center[3], m_rows[3][3];
+};
+
+void run_depth(const Settings& settings, Report& report, const std::string& name, bool frames) {
+    if (!settings.wants_case(name)) return;
+    const int side = std::min(settings.size, kMostSide);
+    std::vector<Deformation> list = gaussians(1, .05, .2);
+    std::mt19937 random(2);
+    const auto number = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    for (Deformation& d : list) {
+        d.center_w = number(-.2, .2);
+        d.extent_w = number(.05, .2);
+        if (frames) d.orientation = {number(.1, 1), number(-1, 1), number(-1, 1), number(-1, 1)};
+    }
+    const auto across = static_cast<std::size_t>(side);
+    const std::size_t points = across * across, bytes = 3 * points * sizeof(float);
+    const Buffer base(bytes), out(bytes), edited(bytes);
+    std::vector<glm::dvec2> parameters;
+    PointDepths depths;
+    for (std::size_t p = 0; p < points; ++p) {
+        const double u = (static_cast<double>(p % across) + 0.5) / side,
+                     v = (static_cast<double>(p / across) + 0.5) / side;
+        const float at[3] = {static_cast<float>(u), static_cast<float>(v),
+                             static_cast<float>(0.2 * std::sin(7 * u) * std::cos(5 * v))};
+        std::copy_n(at, 3, &base.as<float>()[3 * p]);
+        parameters.push_back({at[0], at[1]});
+        depths.w.push_back(at[2]);
+        depths.normal.push_back({0, 0, 1});
+    }
+    const float* from = base.as<float>();
+    float* to = out.as<float>();
+    const std::vector<OwnCoordinates<double>> own(list.begin(), list.end());
+    const std::vector<OwnCoordinates<long double>> exactly(list.begin(), list.end());
+    const auto plain = [&] {
+        for (std::size_t p = 0; p < points; ++p) {
+            glm::dvec3 sum(from[3 * p], from[3 * p + 1], from[3 * p + 2]);
+            const double at[3] = {sum.x, sum.y, sum.z};
+            for (std::size_t k = 0; k < list.size(); ++k)
+                sum += list[k].vector * std::exp(-own[k].squared(at));
+            for (int c = 0; c < 3; ++c) to[3 * p + static_cast<std::size_t>(c)] = static_cast<float>(sum[c]);
+        }
+    };
+    std::vector<long double> exact(3 * points);
+    for (std::size_t p = 0; p < points; p += kTruthStep) {
+        const long double at[3] = {from[3 * p], from[3 * p + 1], from[3 * p + 2]};
+        for (std::size_t c = 0; c < 3; ++c) {
+            long double& sum = exact[3 * p + c] = at[c];
+            for (std::size_t k = 0; k < list.size(); ++k)
+                sum += list[k].vector[static_cast<int>(c)] * std::exp(-exactly[k].squared(at));
+        }
+    }
+    const DeformOptions options;
+    Edits<DeformedPoints, float> edits(DeformedPoints(parameters, depths, options), list, from,
+                                       edited.as<float>());
+    DeformedPoints scattered(parameters, depths, options);
+    const std::vector<DeformationChange> changes = difference({}, list);
+    std::vector<DeformationChange> renewed;  // taken away and added: the surface stays
+    for (const DeformationChange& change : changes) renewed.push_back({change.after, change.after});
+    scattered.apply(changes);
+    scattered.write(from, to);
+    const auto drawn = [to](std::size_t k) { return static_cast<double>(to[k]); };
+    const std::vector<Contender> contenders = {
+        {"double", plain, 1, drawn},
+        {"points",
+         [&] {
+             scattered.apply(renewed);
+             scattered.write(from, to);
+         },
+         2, drawn, scattered.error_bound()},
+        {"points_edit", [&] { edits.run(); }, static_cast<double>(list.size())}};
+    measure(
+        name, side, points, settings, contenders, [&](std::size_t k) { return exact[k]; }, report);
+}
+
 /// The loop that one would write first, with normals: those of the plane are (0, 0, 1).
 void plain_normals_loop(const std::vector<Deformation>& list, const std::vector<double>& u, const float* base,
                         float* out, float* normals) {
@@ -418,6 +527,8 @@ void run(const Settings& settings, Report& report) {
     run_list(settings, report, "gaussians_wide", .1, .3);
     run_normals(settings, report, "normals_local", .02, .08);
     run_normals(settings, report, "normals_wide", .1, .3);
+    run_depth(settings, report, "depth", false);
+    run_depth(settings, report, "frames", true);
     run_blend(settings, report);
     const auto row = [&](const char* case_name, const char* scheme) {
         return report.find(case_name, scheme);

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/body/displacement.h"
 #include "anamorph/figure/body/eigenvectors.h"
 #include "anamorph/figure/files/frame_file.h"
 #include "anamorph/figure/files/motion_file.h"
@@ -205,6 +206,45 @@ TEST(Crystal, AtomsAreEllipsoidsOfDisplacement) {
     // U_13 is what is displaced along both a* and c*: from the sum of the two directions.
     const double both = square_along(reciprocal[0] + reciprocal[2]);
     EXPECT_NEAR((both - .02 - .05) / 2, .012, 1e-12);
+}
+
+/// The probability within s, by Simpson's rule over the density of distances in long double.
+long double held_within(long double s) {
+    const int steps = 20000;
+    const auto density = [](long double r) {
+        return std::sqrt(2 / std::numbers::pi_v<long double>) * r * r * std::exp(-r * r / 2);
+    };
+    long double sum = 0;
+    for (int i = 0; i <= steps; ++i)
+        sum += density(s * i / steps) * (i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2);
+    return sum * s / steps / 3;
+}
+
+TEST(Crystal, EllipsoidsHoldWhatTheySay) {
+    for (const double probability : {1e-12, 1e-3, .2, .4999999, .5, .5000001, .9, .999})
+        EXPECT_NEAR(static_cast<double>(held_within(displacement_scale(probability)) / probability), 1, 1e-13)
+            << probability;
+    // Where 1 - probability counts: the quantiles of chi-squared with 3 degrees of freedom in tables, to the digits that these have.
+    EXPECT_NEAR(std::pow(displacement_scale(.999), 2), 16.2662, 5e-5);
+    EXPECT_NEAR(std::pow(displacement_scale(.99), 2), 11.3449, 5e-5);
+    EXPECT_LT(displacement_scale(1 - 0x1p-53), 10);
+    EXPECT_GT(displacement_scale(1e-300), 0);
+    for (const double bad : {0., 1., -1., 2., static_cast<double>(NAN)})
+        EXPECT_THROW(displacement_scale(bad), Error) << bad;
+}
+
+TEST(Crystal, AnotherProbabilityMovesNoAtom) {
+    const FigureFrame half = read_motion(kCell, "test.cif")->frame(1),
+                      most = read_motion(kCell, "test.cif", .9)->frame(1);
+    const double larger = displacement_scale(.9) / displacement_scale(.5);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(half.bodies[i].shape.center, most.bodies[i].shape.center);
+        // The second atom has no displacement.
+        for (int k = 0; k < 3; ++k)
+            EXPECT_DOUBLE_EQ(most.bodies[i].shape.axes[k],
+                             half.bodies[i].shape.axes[k] * (i == 1 ? 1 : larger));
+    }
+    EXPECT_THROW(read_motion(kCell, "test.cif", 1), Error);
 }
 
 TEST(Crystal, SaysWhatIsWrong) {

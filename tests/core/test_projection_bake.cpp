@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <thread>
@@ -226,6 +227,29 @@ TEST(ProjectionBake, SharedRowsMakeTheWhole) {
     EXPECT_EQ(painted, whole.painted);
 }
 
+TEST(ProjectionBake, APartHoldsItsRowsAlone) {
+    const std::vector<float> pixels = coordinates(64, 32);
+    const Projector projector(Chart(Projection::equirectangular, 64, 32), {{0.1, 0.2, 0.3}});
+    BakeOptions options;
+    options.size = {20, 17};
+    options.margin = 2;
+    const BakedTexture whole = bake(wall(), {{projector, pixels.data()}}, options);
+    std::vector<float> all;
+    std::int64_t painted = 0;
+    const std::vector<int> edges = {0, 0, 1, 9, 17, 40};
+    for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+        options.begin_row = edges[k];
+        options.end_row = edges[k + 1];
+        const BakedTexture part = bake(wall(), {{projector, pixels.data()}}, options);
+        EXPECT_EQ(part.pixels.size(),
+                  static_cast<std::size_t>(80 * (std::min(edges[k + 1], 17) - std::min(edges[k], 17))));
+        all.insert(all.end(), part.pixels.begin(), part.pixels.end());
+        painted += part.painted;
+    }
+    EXPECT_EQ(all, whole.pixels);
+    EXPECT_EQ(painted, whole.painted);
+}
+
 TEST(ProjectionBake, RefusesInWordsAndTakesTrianglesThatAreNone) {
     const std::vector<float> pixels = plain(64, 32, 1);
     const Projector projector(Chart(Projection::equirectangular, 64, 32));
@@ -245,6 +269,13 @@ TEST(ProjectionBake, RefusesInWordsAndTakesTrianglesThatAreNone) {
                 ThrowsMessage<Error>(HasSubstr("fade=nan: must be from 0")));
     EXPECT_THAT(with([](BakeOptions& o) { o.margin = -1; }),
                 ThrowsMessage<Error>("margin=-1: must be from 0 to 64"));
+    EXPECT_THAT(with([](BakeOptions& o) { o.begin_row = -1; }),
+                ThrowsMessage<Error>("begin_row=-1: must be at least 0"));
+    EXPECT_THAT(with([](BakeOptions& o) {
+                    o.begin_row = 5;
+                    o.end_row = 4;
+                }),
+                ThrowsMessage<Error>("end_row=4: must be at least begin_row"));
     EXPECT_THAT(
         [&] {
             bake(wall(), {{projector, nullptr}});

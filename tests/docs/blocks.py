@@ -108,14 +108,17 @@ OTHERS = [
     Other("python", "deform.AnchorDeformation(", "vtk", "anchor"),
     Other("python", "import vtkAnamorphDeformImage\n", "vtk", "image"),
     Other("python", "import vtkAnamorphNonlinearTexture\n", "vtk", "bent"),
+    Other("python", "import vtkAnamorphBlendShapeWriter\n", "vtk", "writer"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "import vtkAnamorphPanoramaView\n", "vtk", "view"),
     Other("python", "vtkAnamorphEllipsoidMapper()", "vtk", "mapper"),
+    Other("python", "vtkLabeledDataMapper()", "vtk", "labels"),
     Other("python", "mapper.AddTexture(", "vtk", "textures"),
     Other("python", 'SetRepresentationType("Ellipsoids")', "paraview", "ellipsoids"),
     Other("python", "EllipsoidTextures, ", "paraview", "textures"),
     Other("python", 'SetRepresentationType("Panorama")', "paraview", "panorama"),
+    Other("python", 'SaveData("face.glb"', "paraview", "save"),
     Other("python", "LoadState(", "paraview", "state"),
 ]
 FIRST_LINES = [  # of blocks without a word about their language

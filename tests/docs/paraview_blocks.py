@@ -59,6 +59,11 @@ output.PointData.append(numpy.tile([0.1, 0, 0, 0, 0.2, 0, 0, 0, 0.1], (9, 1)), "
     Render(view)
 
 
+def check_save():
+    made = run("save", names(base=Sphere(), smile=Sphere(Radius=0.75)))
+    assert "SaveData" in made and b"targetNames" in open("face.glb", "rb").read()
+
+
 def check_panorama():
     subprocess.run(["/usr/bin/python3", "-c", "import OpenImageIO as o; b = o.ImageBuf(o.ImageSpec(64, 32, 3, 'uint8'));"
                     "o.ImageBufAlgo.fill(b, (1, 0, 0)); b.write('panorama.png')"], check=True)
@@ -76,7 +81,7 @@ def check_state():
     assert (shown(GetViews()[-1]).std(0) > 5).any(), "the state's view is of one color"
 
 
-checks = {"ellipsoids": check_ellipsoids, "panorama": check_panorama, "state": check_state}
+checks = {"ellipsoids": check_ellipsoids, "panorama": check_panorama, "save": check_save, "state": check_state}
 for check in checks.values():
     check()
 assert set(TEXT) == {*checks, "textures"}, TEXT.keys()

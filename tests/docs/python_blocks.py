@@ -86,6 +86,15 @@ def check_bent():
     assert 0 < bent.GetOutput().GetFieldData().GetArray("anamorph:max_error").GetValue(0) <= 0.25
 
 
+def check_writer():
+    base, smile, frown = (vtkSphereSource() for _ in range(3))
+    smile.SetRadius(0.75)
+    writer = run("writer", {"base": base, "smile": smile, "frown": frown})["writer"]
+    assert writer.GetErrorCode() == 0 and writer.GetMaxError() < 1e-7, writer
+    with open("face.glb", "rb") as file:
+        assert b'"targetNames":["smile","shape 2"]' in file.read()
+
+
 def check_project():
     scene = vtkSphereSource()
     scene.SetRadius(5)
@@ -120,6 +129,8 @@ def check_mapper():
     shutil.copy("examples/figures/walker.nudes", "walker.nudes")
     names = run("mapper", {})
     assert (drawn(names["actor"]).sum(1) > 0).sum() > 200, "no walker is seen"
+    run("labels", names)
+    assert names["mapper"].GetStyle() == names["mapper"].OCTANT and names["renderer"].GetActors2D().GetNumberOfItems() == 1
     texture, image = vtkTexture(), names["anamorph"].vtkAnamorphFigureImage()
     texture.SetInputData(red_picture())
     run("textures", {**names, "texture": texture, "image": image, "picture": red_picture()})
@@ -128,8 +139,8 @@ def check_mapper():
     assert image.GetOutput().GetNumberOfPoints() > 0
 
 
-checks = {"deform": check_deform, "image": check_image, "bent": check_bent, "project": check_project, "shader": check_shader,
-          "view": check_view, "mapper": check_mapper}
+checks = {"deform": check_deform, "image": check_image, "bent": check_bent, "writer": check_writer, "project": check_project,
+          "shader": check_shader, "view": check_view, "mapper": check_mapper}
 for check in checks.values():
     check()
-assert set(TEXT) == {*checks, "depths", "anchor", "textures"}, TEXT.keys()
+assert set(TEXT) == {*checks, "depths", "anchor", "labels", "textures"}, TEXT.keys()

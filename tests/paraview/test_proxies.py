@@ -2,9 +2,11 @@
 # host: pvpython
 """Every proxy of the plugin can be made; every property is documented, has the default of the C++ class and the range that
 it takes, both those of the core's rows of numbers where it has one; every parameter of a class is a property."""
+import contextlib
 import glob
 import os
 import re
+import sqlite3
 import subprocess
 import xml.etree.ElementTree as xml
 
@@ -50,7 +52,8 @@ LEAST_ALONE = {"SelectedDeformation": 0, "BaseIndex": 0, "Resolution": 0}
 NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
             for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}
 # Proxies with fewer numbers than others: of these defaults, ends of ranges, and parameters.
-FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphNonlinearTexture": (3, 3, 3), "AnamorphSplatReader": (0, 0, 1)}
+FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphBlendShapeWriter": (3, 2, 6), "AnamorphNonlinearTexture": (3, 3, 3),
+       "AnamorphSplatReader": (0, 0, 1)}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider for what has two ends, of which none can be dragged over so much. Ends beyond this are left to the filter.
@@ -248,6 +251,11 @@ def with_input(cls):
         with open("shape.obj", "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         new.AddFileName("shape.obj")
+    elif cls is anamorph.vtkAnamorphBlendShapeWriter:
+        plane = vtkPlaneSource()
+        plane.Update()
+        new.AddInputData(plane.GetOutput())
+        new.SetFileName("plane.glb")
     elif cls is anamorph.vtkAnamorphSplatReader:
         with open("splats.ply", "w") as file:
             file.write(surfaces.splats_head(0))
@@ -331,6 +339,9 @@ def check_ranges(element):
     return ends
 
 
+folder = os.environ["ANAMORPH_SOURCE_DIR"] + "/plugins/paraview/anamorph/"
+icons = {file.get("alias") for file in xml.parse(folder + "anamorph.qrc").getroot().iter("file")}
+assert icons == set(os.listdir(folder + "icons")), icons
 (rows, menus), compared_rows = core_rows(), set()
 found = list(proxies())
 assert len(found) >= 4, found
@@ -347,7 +358,12 @@ for group, element in found:
     check_documentation(element)
     if element.get("base_proxyname") or not hasattr(anamorph, element.get("class") or ""):
         continue
-    assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
+    if group == "writers":  # Save Data offers them
+        assert element.find("Hints/WriterFactory").get("extensions"), name
+    else:
+        assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
+        icon = element.find("Hints/ShowInMenu").get("icon")
+        assert icon.startswith(":/anamorph/") and icon[len(":/anamorph/"):] in icons, (name, icon)
     compared, own = check_defaults(element), check_parameters(element)
     least_compared, least_ends, least_own = FEW.get(name, (4, 2, 4))
     assert compared >= least_compared and own >= least_own, (name, compared, own)
@@ -357,5 +373,11 @@ for group, element in found:
     ends = check_ranges(element)
     assert ends >= least_ends, (name, ends)
     print(name, ":", compared, "defaults,", own, "parameters,", ends, "ends of ranges")
+# ParaView's help has a page of each, where Qt's tools made any.
+for path in glob.glob(os.environ["ANAMORPH_BUILD_DIR"] + "/plugins/paraview/anamorph/paraview_help/*.qch"):
+    with contextlib.closing(sqlite3.connect(path)) as pages:
+        names = {row[0] for row in pages.execute("SELECT Name FROM FileNameTable")}
+    wanted = {f"{group}.{element.get('name')}.html" for group, element in found if group in ("sources", "filters", "writers")}
+    assert len(wanted) > 12 and wanted <= names, wanted - names
 wanted_rows = (set(rows) | set(menus)) - IN_TABLES - NOT_OFFERED
 assert compared_rows == wanted_rows, compared_rows ^ wanted_rows

@@ -6,6 +6,7 @@ import sys
 import traceback
 
 import anamorph
+import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData, vtkTable
@@ -143,6 +144,43 @@ def check_baked(rank, ranks):
     assert baked(strips(0, 6 if rank == ranks - 1 else 0), True) == whole
 
 
+def check_baked_by_pieces(rank, ranks):
+    """Asked for a part of the texture each, ranks have that part of the whole, and the whole's counts."""
+    whole = bake_of(strips(0, 6))
+    whole.SetController(None)
+    whole.Update()
+    counts = texture_and_counts(whole.GetOutput())[1]
+    texels = vtk_to_numpy(whole.GetOutput().GetPointData().GetScalars()).reshape(40, 120, -1)
+    edges = [0, 7, *range(40 - ranks + 2, 40), 40][:ranks] + [40]
+    for ends in (edges, [0] * ranks + [40]):  # one with all, too, and the others with none
+        bake = bake_of(strips(rank * 6 // ranks, (rank + 1) * 6 // ranks))
+        bake.UpdateExtent([0, 119, ends[rank], ends[rank + 1] - 1, 0, 0])
+        part = bake.GetOutput()
+        if ends[rank] == ends[rank + 1]:
+            assert part.GetNumberOfPoints() == 0
+            continue
+        assert part.GetExtent() == (0, 119, ends[rank], ends[rank + 1] - 1, 0, 0), part.GetExtent()
+        found = vtk_to_numpy(part.GetPointData().GetScalars()).reshape(-1, 120, texels.shape[2])
+        assert np.array_equal(found, texels[ends[rank]:ends[rank + 1]]), rank
+        assert texture_and_counts(part)[1] == counts, (texture_and_counts(part)[1], counts)
+
+
+def check_other_blocks(rank, ranks):
+    """What moves or paints blocks, of which every rank has others, waits for nobody, and makes what it makes of them alone."""
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetNumberOfBlocks(ranks + 1)
+    blocks.SetBlock(rank, strips(rank, rank + 1))  # the last is nobody's
+    deform, projection = anamorph.vtkAnamorphDeform(), anamorph.vtkAnamorphPanoramaProjection()
+    deform.AddDeformation(0, 0, 3, 3, 0, 0, 1)
+    projection.SetPosition(0.2, 0.1, 1)
+    for algorithm in (deform, projection):
+        algorithm.SetInputData(blocks)
+        algorithm.Update()
+        made = algorithm.GetOutputDataObject(0)
+        assert [k for k in range(ranks + 1) if made.GetBlock(k)] == [rank], (rank, algorithm.GetClassName())
+        assert made.GetBlock(rank).GetNumberOfPoints() > 0 or algorithm is projection
+
+
 def errors_of(bake):
     errors = []
     for watched in (bake, bake.GetExecutive()):
@@ -238,7 +276,9 @@ def main():
     check_grid(rank, ranks)
     check_painted(mesh, part, controller)
     check_baked(rank, ranks)
+    check_baked_by_pieces(rank, ranks)
     check_blocks(rank, ranks)
+    check_other_blocks(rank, ranks)
     check_failures(rank)
     print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
 

@@ -219,6 +219,17 @@ vtkSmartPointer<vtkPolyData> transformed(vtkPolyData* mesh, vtkMatrix4x4* matrix
     return filter->GetOutput();
 }
 
+/// glTF's v runs down, VTK's up.
+void turn_texture(vtkPolyData* mesh) {
+    vtkDataArray* texture = mesh ? mesh->GetPointData()->GetTCoords() : nullptr;
+    if (!texture || texture->GetNumberOfComponents() < 2) return;
+    const auto turned = vtkSmartPointer<vtkDataArray>::Take(texture->NewInstance());
+    turned->DeepCopy(texture);
+    for (vtkIdType i = 0; i < turned->GetNumberOfTuples(); ++i)
+        turned->SetComponent(i, 1, 1 - turned->GetComponent(i, 1));
+    mesh->GetPointData()->SetTCoords(turned);
+}
+
 /// A primitive with its points, and its normals, moved by one target; by none where that is null.
 vtkSmartPointer<vtkPolyData> moved(vtkPolyData* mesh, const Loader::MorphTarget* target) {
     auto copy = vtkSmartPointer<vtkPolyData>::New();
@@ -290,6 +301,8 @@ void vtkAnamorphBlendShapeReader::File::read_gltf(const std::string& path, int w
                       loader->LoadModelData(binary) && loader->BuildModelVTKGeometry();
     if (!read) throw Error("FileName", path, "it is no glTF that can be read" + errors.text());
     const Loader::Model& model = *loader->GetInternalModel();
+    for (const Loader::Mesh& mesh : model.Meshes)
+        for (const Loader::Primitive& primitive : mesh.Primitives) turn_texture(primitive.Geometry);
     skinned = !model.Skins.empty();
     int nodes_with_targets = 0;
     const auto targets_of = [&](const Loader::Node& node) {
@@ -568,8 +581,10 @@ int vtkAnamorphBlendShapeReader::RequestData(vtkInformation* request, vtkInforma
             names->InsertNextValue(file.names[i]);
             numbers->InsertNextValue(weights[i]);
         }
-        blended->GetFieldData()->AddArray(names);
-        blended->GetFieldData()->AddArray(numbers);
+        for (vtkMultiBlockDataSet* output : {blended, shapes}) {
+            output->GetFieldData()->AddArray(names);
+            output->GetFieldData()->AddArray(numbers);
+        }
         if (!file.times.empty())
             for (vtkMultiBlockDataSet* output : {blended, shapes})
                 output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);

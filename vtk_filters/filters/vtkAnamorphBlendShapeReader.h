@@ -14,8 +14,8 @@
  * Output 1 are the shapes as vtkAnamorphInbetween takes them: a multiblock whose block 0 is the base ("base"), and block i target i under its name,
  * each built as output 0. A target of one node leaves the others as they are.
  *
- * TIME_STEPS are the times of the animation's keys, in seconds. Field arrays on output 0: "anamorph:shapes", the names, and
- * "anamorph:weights". All is in the first piece.
+ * TIME_STEPS are the times of the animation's keys, in seconds. Field arrays on both outputs: "anamorph:shapes", the names, and
+ * "anamorph:weights", so that vtkAnamorphBlendShapeWriter writes them again. All is in the first piece.
  */
 #ifndef vtkAnamorphBlendShapeReader_h
 #define vtkAnamorphBlendShapeReader_h

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/figure/language/performance.h"
 #include "anamorph/figure/language/script.h"
@@ -75,17 +76,18 @@ std::string errors_of(const anamorph::figure::Script& script) {
 }
 
 /// A motion from a file that is no script. Throws Error.
-std::unique_ptr<Motion> read_motion_file(const std::string& path) {
+std::unique_ptr<Motion> read_motion_file(const std::string& path, double probability = 0.5) {
     const std::optional<std::string> text = read_text(path, anamorph::text_file::kMostBytes);
     if (!text) throw Error("FileName", path, "there is no such file that can be read");
-    return anamorph::figure::read_motion(*text, path);
+    return anamorph::figure::read_motion(*text, path, probability);
 }
 
 /// The script that a file is, performed, or its motion. Throws Error.
 std::unique_ptr<Motion> open_motion(const std::string& path, const std::vector<std::string>& libraries,
-                                    anamorph::figure::Dialect dialect) {
+                                    anamorph::figure::Dialect dialect, double probability) {
+    anamorph::figure::kProbabilityRow.check(probability, "Probability");
     if (path.empty()) throw Error("FileName", "", "must be the name of a script");
-    if (anamorph::figure::is_motion_file(path)) return read_motion_file(path);
+    if (anamorph::figure::is_motion_file(path)) return read_motion_file(path, probability);
     std::vector<std::string> named;
     std::copy_if(libraries.begin(), libraries.end(), std::back_inserter(named),
                  [](const std::string& name) { return !name.empty(); });
@@ -178,7 +180,8 @@ void vtkAnamorphFigureReader::Prepare() {
     this->Current = nullptr;
     this->Current = std::make_unique<Play>(open_motion(
         this->FileName, this->Libraries,
-        this->Dialect == STRICT ? anamorph::figure::Dialect::strict : anamorph::figure::Dialect::classic));
+        this->Dialect == STRICT ? anamorph::figure::Dialect::strict : anamorph::figure::Dialect::classic,
+        this->Probability));
     this->Current->since = this->GetMTime();
     for (const std::string& warning : this->Current->motion->warnings()) vtkWarningMacro(<< warning);
 }
@@ -230,5 +233,6 @@ void vtkAnamorphFigureReader::PrintSelf(ostream& os, vtkIndent indent) {
     for (const std::string& name : this->Libraries) os << " " << name;
     os << "\n"
        << indent << "Joints: " << this->Joints << "\n"
+       << indent << "Probability: " << this->Probability << "\n"
        << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
 }

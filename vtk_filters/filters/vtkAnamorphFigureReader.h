@@ -83,6 +83,15 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     ///@}
 
     ///@{
+    /**
+     * The probability with which the ellipsoids of a .cif hold their atoms, between 0 and 1, as of ORTEP; 0.5, the default, is what pictures of
+     * structures have. Atoms whose file gives no displacement stay small spheres.
+     */
+    vtkSetMacro(Probability, double);
+    vtkGetMacro(Probability, double);
+    ///@}
+
+    ///@{
     /** The precision of points: vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default). */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
@@ -107,6 +116,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     std::vector<std::string> Libraries;
     bool Joints = false;
     int OutputPointsPrecision = DOUBLE_PRECISION;
+    double Probability = 0.5;
     std::unique_ptr<Play> Current;  ///< the performance of the script as it was read last
 };
 

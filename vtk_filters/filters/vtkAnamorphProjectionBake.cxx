@@ -117,20 +117,25 @@ struct vtkAnamorphProjectionBake::Run {
     std::vector<anamorph::ThrownPicture> pictures = {};
     std::vector<anamorph::BakedTriangle> mesh = {};
     bool has_coordinates = true;
+    bool own_rows = false;
 
     /// Of a mesh of triangles.
     void take_mesh(vtkPolyData* triangles);
-    /// Puts the meshes of all ranks in the place of this one's.
+    /// Whether ranks are asked for rows of which each is one rank's: then they make those, and have no others. What
+    /// they are asked for is then in `options`.
+    void find_rows(const int* extent);
+    /// Puts the meshes of all ranks, as far as they reach into the rows that are held, in the place of this one's.
     void share_mesh();
     void take_pictures();
     void list_occluders(vtkPolyData* triangles, vtkDataObject* others);
     void cast_shadows();
-    /// Every rank makes some of the rows, and gets those of the others.
+    /// Every rank makes some of the rows, and gets those of the others unless it is asked for its own.
     anamorph::BakedTexture bake_with_others();
     anamorph::BakedTexture bake();
     /// All of it, to a part of an image.
     void bake_to(vtkPolyData* of, vtkDataObject* others, const int* extent, vtkImageData* output);
     void share_rows(anamorph::BakedTexture& texture) const;
+    void share_counts(anamorph::BakedTexture& texture) const;
     void hand_over(const anamorph::BakedTexture& texture, const int* extent, vtkImageData* output) const;
 };
 
@@ -149,22 +154,66 @@ void vtkAnamorphProjectionBake::Run::take_mesh(vtkPolyData* triangles) {
     });
 }
 
+void vtkAnamorphProjectionBake::Run::find_rows(const int* extent) {
+    const int height = options.size.height;
+    if (height < 1) return;
+    // Rows of an image run up, those of a texture down.
+    const int begin = std::clamp(height - 1 - extent[3], 0, height),
+              end = std::clamp(height - extent[2], begin, height);
+    std::vector<int> asked(static_cast<std::size_t>(height), 0), ranks(asked);
+    if (extent[0] <= extent[1]) std::fill(asked.begin() + begin, asked.begin() + end, 1);
+    filter.Controller->AllReduce(asked.data(), ranks.data(), height, vtkCommunicator::SUM_OP);
+    own_rows = std::all_of(ranks.begin(), ranks.end(), [](int of) { return of == 1; });
+    if (!own_rows) return;
+    options.begin_row = begin;
+    options.end_row = extent[0] <= extent[1] ? end : begin;
+}
+
 void vtkAnamorphProjectionBake::Run::share_mesh() {
-    anamorph_vtk::TriangleList list;
-    for (const anamorph::BakedTriangle& t : mesh)
-        for (std::size_t k = 0; k < 3; ++k) {
-            list.push_back(t.points[k]);
-            list.emplace_back(t.coordinates[k], 0);
+    const std::vector<anamorph::BakedTriangle> own = std::move(mesh);
+    mesh.clear();
+    vtkMultiProcessController* controller = filter.Controller;
+    // The rows that a triangle may paint, and one more on either side, as far as they are held.
+    const auto reaches = [&](const anamorph::BakedTriangle& t) {
+        if (!own_rows) return true;
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const auto& c : t.coordinates) {
+            low = std::min(low, (1 - c.y) * options.size.height);
+            high = std::max(high, (1 - c.y) * options.size.height);
         }
-    list = anamorph_vtk::of_all_ranks(list, filter.Controller);
-    mesh.resize(list.size() / 6);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        anamorph::BakedTriangle& t = mesh[i / 6];
-        const std::size_t k = i % 6 / 2;
-        if (i % 2 == 0)
-            t.points[k] = list[i];
-        else
-            t.coordinates[k] = list[i];
+        return !(high + options.margin + 2 < options.begin_row || low - options.margin - 2 > options.end_row);
+    };
+    // One rank's after the other's, so that no rank holds more than one of them beside its own.
+    constexpr std::size_t kNumbers = 15;
+    for (int rank = 0; rank < controller->GetNumberOfProcesses(); ++rank) {
+        vtkIdType count = rank == controller->GetLocalProcessId() ? static_cast<vtkIdType>(own.size()) : 0;
+        controller->Broadcast(&count, 1, rank);
+        // Some at a time: their numbers are counted with int.
+        constexpr vtkIdType kMost = 1 << 18;
+        std::vector<double> numbers;
+        for (vtkIdType first = 0; first < count; first += kMost) {
+            const auto some = static_cast<std::size_t>(std::min(kMost, count - first));
+            numbers.assign(some * kNumbers, 0);
+            double* to = numbers.data();
+            if (rank == controller->GetLocalProcessId())
+                for (std::size_t i = 0; i < some; ++i) {
+                    const anamorph::BakedTriangle& t = own[static_cast<std::size_t>(first) + i];
+                    for (std::size_t k = 0; k < 3; ++k)
+                        for (const double number : {t.points[k].x, t.points[k].y, t.points[k].z,
+                                                    t.coordinates[k].x, t.coordinates[k].y})
+                            *to++ = number;
+                }
+            controller->Broadcast(numbers.data(), static_cast<vtkIdType>(numbers.size()), rank);
+            for (std::size_t i = 0; i < some; ++i) {
+                const double* from = &numbers[i * kNumbers];
+                anamorph::BakedTriangle t;
+                for (std::size_t k = 0; k < 3; ++k, from += 5) {
+                    t.points[k] = {from[0], from[1], from[2]};
+                    t.coordinates[k] = {from[3], from[4]};
+                }
+                if (reaches(t)) mesh.push_back(t);
+            }
+        }
     }
 }
 
@@ -232,8 +281,10 @@ anamorph::BakedTexture vtkAnamorphProjectionBake::Run::bake_with_others() {
     vtkMultiProcessController* controller = filter.Controller;
     anamorph::BakedTexture texture;
     std::exception_ptr failure;
-    options.first_row = controller->GetLocalProcessId();
-    options.row_step = controller->GetNumberOfProcesses();
+    if (!own_rows) {
+        options.first_row = controller->GetLocalProcessId();
+        options.row_step = controller->GetNumberOfProcesses();
+    }
     try {
         texture = bake();
     } catch (...) {
@@ -246,7 +297,8 @@ anamorph::BakedTexture vtkAnamorphProjectionBake::Run::bake_with_others() {
     if (failure) std::rethrow_exception(failure);
     if (least[0] == 0) throw anamorph::Error("another rank could not bake its part of the texture");
     if (least[0] != -least[1]) throw anamorph::Error("panoramas must be the same on all ranks");
-    share_rows(texture);
+    if (!own_rows) share_rows(texture);
+    share_counts(texture);
     return texture;
 }
 
@@ -284,6 +336,10 @@ void vtkAnamorphProjectionBake::Run::share_rows(anamorph::BakedTexture& texture)
                 next += row_length;
             });
     }
+}
+
+void vtkAnamorphProjectionBake::Run::share_counts(anamorph::BakedTexture& texture) const {
+    vtkMultiProcessController* controller = filter.Controller;
     const long long own[] = {texture.painted, texture.unseen};
     long long sums[2] = {};
     controller->AllReduce(own, sums, 2, vtkCommunicator::SUM_OP);
@@ -302,11 +358,12 @@ void vtkAnamorphProjectionBake::Run::hand_over(const anamorph::BakedTexture& tex
     for (int row = extent[2]; row <= extent[3]; ++row)
         for (int i = extent[0]; i <= extent[1]; ++i, ++next)
             for (int c = 0; c < channels; ++c) {
-                const float value = texture.pixels[(static_cast<std::size_t>(height - 1 - row) *
-                                                        static_cast<std::size_t>(width) +
-                                                    static_cast<std::size_t>(i)) *
-                                                       static_cast<std::size_t>(channels) +
-                                                   static_cast<std::size_t>(c)];
+                const float value =
+                    texture.pixels[(static_cast<std::size_t>(height - 1 - row - options.begin_row) *
+                                        static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(i)) *
+                                       static_cast<std::size_t>(channels) +
+                                   static_cast<std::size_t>(c)];
                 const double coverage = bytes && c == channels - 1 ? 255 : 1;
                 const double out = value * coverage;
                 scalars->SetComponent(next, c, bytes ? std::floor(out + 0.5) : out);
@@ -322,6 +379,7 @@ void vtkAnamorphProjectionBake::Run::bake_to(vtkPolyData* of, vtkDataObject* oth
     options.margin = filter.Margin;
     const vtkSmartPointer<vtkPolyData> triangles = anamorph_vtk::triangulated(of);
     const bool shared = anamorph_vtk::distributed(filter.Controller);
+    if (shared) find_rows(extent);
     take_mesh(triangles);
     if (shared) share_mesh();
     if (filter.Occlusion) list_occluders(triangles, others);

@@ -15,6 +15,10 @@
  * The output is an image that VTK's writers write: the components of the panoramas, and one that says where there is
  * something, 0 or 1 (255 for bytes). It has bytes if all panoramas have, and float otherwise.
  *
+ * On several ranks, each has a part of the mesh. Where they are asked for parts of the texture that make up all of it, each rank holds
+ * those rows alone, and of the mesh what reaches into them; where they are asked for more, each makes some rows, and gets the others'. What
+ * casts shadows is held by every rank.
+ *
  * Field arrays: "anamorph:painted", the number of texels painted; "anamorph:unseen", of those of the mesh that no projector
  * throws anything on.
  */

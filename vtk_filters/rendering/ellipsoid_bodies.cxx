@@ -228,6 +228,34 @@ bool EllipsoidBodies::bounds(double box[6]) const {
     return any;
 }
 
+std::vector<std::uint32_t> EllipsoidBodies::largest(std::size_t count) const {
+    struct Size {
+        float square;          ///< of the longest half axis
+        std::uint32_t spread;  ///< in no order
+        std::uint32_t body;
+    };
+    std::vector<Size> sizes;
+    sizes.reserve(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const EllipsoidBody& body = bodies[i];
+        if (!body.drawn) continue;
+        double square = 0;
+        for (int k = 0; k < 3; ++k) square = std::max(square, glm::dot(body.axes[k], body.axes[k]));
+        // A multiplication by an odd number takes each number to another one (Knuth 1998, section 6.4).
+        const auto number = static_cast<std::uint32_t>(i);
+        sizes.push_back({static_cast<float>(square), number * 2654435769u, number});
+    }
+    count = std::min(count, sizes.size());
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(count), sizes.end(),
+                     [](const Size& a, const Size& b) {
+                         return a.square != b.square ? a.square > b.square : a.spread < b.spread;
+                     });
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t i = 0; i < count; ++i) chosen.push_back(sizes[i].body);
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
 std::optional<LineHit> EllipsoidBodies::hit(const EllipsoidBlock& block, const glm::dvec3& from,
                                             const glm::dvec3& to) const {
     std::optional<LineHit> first;

@@ -86,6 +86,8 @@ class EllipsoidBodies {
     /// Gives all of a block one color, and its opacity.
     void color(const EllipsoidBlock& block, const double* color);
     bool bounds(double box[6]) const;
+    /// The `count` bodies that are longest, in their order; of equally long ones any, spread over all.
+    std::vector<std::uint32_t> largest(std::size_t count) const;
     /// The first of a block's bodies that a line enters, or leaves where it begins in it.
     std::optional<LineHit> hit(const EllipsoidBlock& block, const glm::dvec3& from,
                                const glm::dvec3& to) const;

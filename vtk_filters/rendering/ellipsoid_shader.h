@@ -145,7 +145,58 @@ constexpr const char* kEllipsoidPosition = R"glsl(
     seen = seen && !isCut(vertexVC.xyz);
   }
 #endif
+//STYLE
   float depth = depthOf(vertexVC.xyz);
+)glsl";
+
+/// Finds the face of the octant that looks toward the eye behind its surface, and whether there is ink: on lines 2 pixels wide where
+/// principal planes meet the surface, and on hatches of a face, at each fifth of an axis. The ray goes on in the direction
+/// k s - n in the basis (times 1 / k it is s - e), and leaves the octant where the first of its three planes is passed; if that is beyond the
+/// sphere, it has missed the body.
+constexpr const char* kEllipsoidStyle = R"glsl(
+  vec3 own = basis * s;
+  vec3 ownSize = max(vec3(length(vec2(dFdx(own.x), dFdy(own.x))), length(vec2(dFdx(own.y), dFdy(own.y))),
+                          length(vec2(dFdx(own.z), dFdy(own.z)))), vec3(1e-20));
+  vec3 pixels = abs(own) / ownSize;
+  float ink = min(pixels.x, min(pixels.y, pixels.z)) < 1.0 ? 0.0 : 1.0;
+#if OCTANT
+  vec3 octantSide = vec3(basis[2].x < 0.0 ? -1.0 : 1.0, basis[2].y < 0.0 ? -1.0 : 1.0, basis[2].z < 0.0 ? -1.0 : 1.0);
+  int octantFace = -1;
+  vec3 cut = own;
+  if (apex.w == 0.0 && side > 0.0 && all(greaterThan(own * octantSide, vec3(0.0))))
+  {
+    vec3 way = basis * (apex.x * s - vec3(0.0, 0.0, 1.0));
+    float passed = 1e30;
+    for (int i = 0; i < 3; ++i)
+    {
+      float t = -own[i] / way[i];
+      if (way[i] * octantSide[i] < 0.0 && t < passed)
+      {
+        passed = t;
+        octantFace = i;
+      }
+    }
+    cut = own + passed * way;
+    seen = seen && octantFace >= 0 && dot(cut, cut) <= 1.0;
+    if (octantFace >= 0) cut[octantFace] = 0.0;
+    s = cut * basis;
+    vertexVC = vec4(center + axes * s, 1.0);
+  }
+  // Derivatives are those of all pixels around, wherever they lie.
+  float hatch = 5.0 * cut[octantFace == 2 ? 0 : octantFace + 1], step = max(length(vec2(dFdx(hatch), dFdy(hatch))), 1e-20);
+  if (octantFace >= 0) ink = abs(hatch - floor(hatch + 0.5)) < step ? 0.0 : 1.0;
+#endif
+)glsl";
+
+/// The normal of a face is that of a principal plane; the transform that normals have takes it along.
+constexpr const char* kEllipsoidFaceNormal = R"glsl(
+  if (octantFace >= 0)
+  {
+    vec3 plane = vec3(0.0);
+    plane[octantFace] = octantSide[octantFace];
+    normalVCVSOutput = normalize((plane * basis) * inverseAxes);
+    coatNormalVCVSOutput = normalVCVSOutput;
+  }
 )glsl";
 
 constexpr const char* kEllipsoidDepth = R"glsl(

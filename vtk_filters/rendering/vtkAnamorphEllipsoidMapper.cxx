@@ -10,6 +10,8 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/body/body_mapping_glsl.h"
+#include "anamorph/figure/body/displacement.h"
+#include "anamorph/figure/body/figure_rows.h"
 #include "block_looks.h"
 #include "ellipsoid_bodies.h"
 #include "ellipsoid_shader.h"
@@ -67,6 +69,7 @@ struct Variant {
     int texture_components = 0;     ///< 0: no texture
     bool texture_is_moved = false;  ///< by the actor's matrix
     int mapping = -1;               ///< of the bodies' own textures; -1: none
+    int style = 0;
     bool operator==(const Variant&) const = default;
 };
 
@@ -89,6 +92,9 @@ struct vtkAnamorphEllipsoidMapper::Drawing {
     vtkNew<vtkPolyData> no_data;  ///< for what VTK's mapper asks of its input
     vtkNew<vtkOpenGLBufferObject> buffer;
     vtkNew<vtkTextureObject> texture;
+    vtkNew<vtkOpenGLBufferObject> chosen;  ///< corners of the bodies that are drawn during interaction
+    vtkMTimeType chosen_time = 0;
+    std::size_t chosen_count = 0;                  ///< of bodies
     vtkWeakPointer<vtkOpenGLRenderWindow> window;  ///< that these are in
     std::vector<vtkSmartPointer<vtkTexture>> textures;
     std::vector<std::string> texture_names;
@@ -183,6 +189,8 @@ void vtkAnamorphEllipsoidMapper::LeaveWindow() {
     window->PushContext();
     current.texture->ReleaseGraphicsResources(window);
     current.buffer->ReleaseGraphicsResources();
+    current.chosen->ReleaseGraphicsResources();
+    current.chosen_time = 0;
     this->Primitives[PrimitiveTris].ReleaseGraphicsResources(window);
     window->PopContext();
 }
@@ -199,6 +207,9 @@ void vtkAnamorphEllipsoidMapper::ShallowCopy(vtkAbstractMapper* mapper) {
     this->OrientationArray = other->OrientationArray;
     this->TensorArray = other->TensorArray;
     this->ScaleFactor = other->ScaleFactor;
+    this->Probability = other->Probability;
+    this->Style = other->Style;
+    this->InteractiveBodies = other->InteractiveBodies;
     this->TextureArray = other->TextureArray;
     this->TextureOffsetArray = other->TextureOffsetArray;
     this->TextureMapping = other->TextureMapping;
@@ -316,11 +327,16 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
         if (!(this->ScaleFactor > 0 && this->ScaleFactor <= 1e300))
             throw anamorph::Error("ScaleFactor", std::to_string(this->ScaleFactor),
                                   "must be a positive number");
+        double scale = this->ScaleFactor;
+        if (this->Shape == COVARIANCE && this->Probability != 0) {
+            anamorph::figure::kProbabilityRow.check(this->Probability, "Probability");
+            scale *= anamorph::figure::displacement_scale(this->Probability);
+        }
         const EllipsoidArrays arrays{this->Shape,
                                      this->AxesArray,
                                      this->OrientationArray,
                                      this->TensorArray,
-                                     this->ScaleFactor,
+                                     scale,
                                      this->TextureArray,
                                      this->TextureOffsetArray,
                                      current.textures.empty() ? nullptr : &current.texture_names};
@@ -472,9 +488,17 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
     state->vtkglDisable(GL_CULL_FACE);
     current.texture->Activate();
     this->FindVariant(renderer, actor);
+    const bool chosen = !selector && this->ChooseBodies(renderer);
     const auto draw = [&](vtkIdType first, std::size_t count) {
         current.first = first;
         this->UpdateShaders(this->Primitives[PrimitiveTris], renderer, actor);
+        if (chosen) {
+            current.chosen->Bind();
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * current.chosen_count), GL_UNSIGNED_INT,
+                           nullptr);
+            current.chosen->Release();
+            return;
+        }
         glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
     };
     if (selector)
@@ -486,6 +510,25 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
     else
         this->DrawTextured(renderer, [&] { draw(0, current.bodies.bodies.size()); });
     current.texture->Deactivate();
+}
+
+/// Finds the bodies that are drawn while the window is interacted with. False where all are drawn.
+bool vtkAnamorphEllipsoidMapper::ChooseBodies(vtkRenderer* renderer) {
+    constexpr double kStill = 1;  // frames a second; windows that are interacted with ask for more
+    Drawing& current = *this->Current;
+    const auto most = static_cast<std::size_t>(this->InteractiveBodies);
+    if (most == 0 || current.bodies.bodies.size() <= most ||
+        renderer->GetRenderWindow()->GetDesiredUpdateRate() < kStill)
+        return false;
+    if (current.chosen_time == this->VBOBuildTime) return true;
+    std::vector<unsigned int> corners;
+    corners.reserve(3 * most);
+    for (const std::uint32_t body : current.bodies.largest(most))
+        for (unsigned int corner = 0; corner < 3; ++corner) corners.push_back(3 * body + corner);
+    current.chosen->Upload(corners, vtkOpenGLBufferObject::ElementArrayBuffer);
+    current.chosen_count = corners.size() / 3;
+    current.chosen_time = this->VBOBuildTime;
+    return true;
 }
 
 /// Draws all bodies at once, or where they have textures those of each by itself.
@@ -530,6 +573,7 @@ void vtkAnamorphEllipsoidMapper::FindVariant(vtkRenderer* renderer, vtkActor* ac
                                      : 0;
     vtkInformation* keys = actor->GetPropertyKeys();
     variant.texture_is_moved = keys && keys->Has(vtkProp::GeneralTextureTransform());
+    variant.style = this->Style;
     variant.mapping = this->Current->textures.empty() || renderer->GetSelector() ? -1 : this->TextureMapping;
 }
 
@@ -553,15 +597,25 @@ void vtkAnamorphEllipsoidMapper::GetShaderTemplate(Shaders shaders, vtkRenderer*
 void vtkAnamorphEllipsoidMapper::ReplaceShaderPositionVC(Shaders shaders, vtkRenderer*, vtkActor*) {
     vtkShader* fragment = shaders[vtkShader::Fragment];
     substitute(fragment, "//VTK::Camera::Dec", "uniform int cameraParallel;\n");
-    substitute(fragment, "//VTK::PositionVC::Dec",
-               std::string("#define CUT ") + (this->Current->variant.cut ? "1\n" : "0\n") +
-                   anamorph_vtk::kEllipsoidDeclarations);
-    substitute(fragment, "//VTK::PositionVC::Impl", anamorph_vtk::kEllipsoidPosition);
+    const Variant& variant = this->Current->variant;
+    substitute(
+        fragment, "//VTK::PositionVC::Dec",
+        std::string("#define CUT ") + (variant.cut ? "1\n" : "0\n") + anamorph_vtk::kEllipsoidDeclarations);
+    std::string position = anamorph_vtk::kEllipsoidPosition;
+    vtkShaderProgram::Substitute(
+        position, "//STYLE",
+        variant.style == PLAIN
+            ? std::string()
+            : std::string(variant.style == OCTANT ? "#define OCTANT 1\n" : "#define OCTANT 0\n") +
+                  anamorph_vtk::kEllipsoidStyle);
+    substitute(fragment, "//VTK::PositionVC::Impl", position);
     substitute(fragment, "//VTK::Depth::Impl", anamorph_vtk::kEllipsoidDepth);
 }
 
 void vtkAnamorphEllipsoidMapper::ReplaceShaderNormal(Shaders shaders, vtkRenderer*, vtkActor*) {
-    substitute(shaders[vtkShader::Fragment], "//VTK::Normal::Impl", anamorph_vtk::kEllipsoidNormal);
+    std::string normal = anamorph_vtk::kEllipsoidNormal;
+    if (this->Current->variant.style == OCTANT) normal += anamorph_vtk::kEllipsoidFaceNormal;
+    substitute(shaders[vtkShader::Fragment], "//VTK::Normal::Impl", normal);
 }
 
 void vtkAnamorphEllipsoidMapper::ReplaceShaderColor(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) {
@@ -572,7 +626,13 @@ void vtkAnamorphEllipsoidMapper::ReplaceShaderColor(Shaders shaders, vtkRenderer
                                "  ambientColor = ambientIntensity * bodyColor.rgb;\n"
                                "  diffuseColor = diffuseIntensity * bodyColor.rgb;\n"
                                "  opacity = opacityUniform * bodyColor.a;\n") +
-                       (this->Current->variant.mapping < 0 ? "" : anamorph_vtk::kBodyTextureColor));
+                       (this->Current->variant.mapping < 0 ? "" : anamorph_vtk::kBodyTextureColor) +
+                       "//STYLE\n");
+    else
+        substitute(fragment, "//VTK::Color::Impl", "//VTK::Color::Impl\n//STYLE\n");
+    substitute(
+        fragment, "//STYLE",
+        this->Current->variant.style == PLAIN ? "" : "  ambientColor *= ink;\n  diffuseColor *= ink;\n");
     this->Superclass::ReplaceShaderColor(shaders, renderer, actor);
 }
 
@@ -691,12 +751,16 @@ void vtkAnamorphEllipsoidMapper::ReleaseGraphicsResources(vtkWindow* window) {
 void vtkAnamorphEllipsoidMapper::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
     static const char* const shapes[] = {"axes", "tensor", "covariance"};
+    static const char* const styles[] = {"plain", "principal ellipses", "octant"};
     static const char* const mappings[] = {"latlong", "mirrored", "linear", "octahedral"};
     os << indent << "Shape: " << shapes[this->Shape] << "\n"
        << indent << "AxesArray: " << this->AxesArray << "\n"
        << indent << "OrientationArray: " << this->OrientationArray << "\n"
        << indent << "TensorArray: " << this->TensorArray << "\n"
        << indent << "ScaleFactor: " << this->ScaleFactor << "\n"
+       << indent << "Probability: " << this->Probability << "\n"
+       << indent << "Style: " << styles[this->Style] << "\n"
+       << indent << "InteractiveBodies: " << this->InteractiveBodies << "\n"
        << indent << "NumberOfTextures: " << this->GetNumberOfTextures() << "\n"
        << indent << "TextureArray: " << this->TextureArray << "\n"
        << indent << "TextureOffsetArray: " << this->TextureOffsetArray << "\n"

@@ -12,7 +12,7 @@
  * - TENSOR: the unit sphere under a matrix (TensorArray, 9 components row by row, or 6 of a symmetric one in
  *   VTK's order XX, YY, ZZ, XY, YZ, XZ), as of diffusion tensors and of vtkTensorGlyph.
  * - COVARIANCE: the same array is the matrix C of the surface x^T C^-1 x = 1, as of displacements of atoms
- *   (ORTEP): half axes are the roots of the eigenvalues. With ScaleFactor 1.5382 an atom is within with a
+ *   (ORTEP): half axes are the roots of the eigenvalues. With Probability 0.5, or ScaleFactor 1.5382, an atom is within with a
  *   probability of 50%.
  *
  * A point is left out, and counted by GetNumberOfSkippedPoints(), where a number is not finite, the
@@ -29,6 +29,14 @@
  * and hardware selection are those of VTK; a selection finds the ids of the points, or of these cells. A
  * texture of the actor is laid around every body as by vtkAnamorphFigureGeometry. Representation (wireframe,
  * points), edges, and culling do nothing.
+ *
+ * Style PRINCIPAL_ELLIPSES draws the three sections of each body across its axes as lines 2 pixels wide, and OCTANT
+ * cuts out the octant that looks toward the eye as well, whose three faces are hatched, as ORTEP has it. What is behind the octant shows through;
+ * depths and selections are those of what is left, and IntersectWithLine() takes the body whole. Where the eye or a cut is within
+ * a body, that one is whole.
+ *
+ * While the window is interacted with (its DesiredUpdateRate is 1 or more) the InteractiveBodies largest are drawn, if there
+ * are more. Pictures that stand still, and selections, have all of them.
  *
  * Bodies have textures of their own where AddTexture() gave any: TextureArray says which one, by name as
  * vtkAnamorphFigureReader does, or by number. They lie on a body as the script's do where core's renderer draws them
@@ -98,6 +106,27 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     /** The factor by which all bodies are scaled about their centers; positive. The default is 1. */
     vtkSetMacro(ScaleFactor, double);
     vtkGetMacro(ScaleFactor, double);
+    ///@}
+
+    ///@{
+    /** With COVARIANCE, the probability with which a body holds its point: between 0 and 1, or 0, the default, for the roots of the eigenvalues. */
+    vtkSetMacro(Probability, double);
+    vtkGetMacro(Probability, double);
+    ///@}
+
+    /** The values of Style. */
+    enum { PLAIN, PRINCIPAL_ELLIPSES, OCTANT };
+
+    ///@{
+    /** How bodies look, as described above. PLAIN by default. */
+    vtkSetClampMacro(Style, int, PLAIN, OCTANT);
+    vtkGetMacro(Style, int);
+    ///@}
+
+    ///@{
+    /** How many bodies, the largest, are drawn while the window is interacted with; 0: all. The default is 250000. */
+    vtkSetClampMacro(InteractiveBodies, int, 0, VTK_INT_MAX);
+    vtkGetMacro(InteractiveBodies, int);
     ///@}
 
     ///@{
@@ -211,13 +240,15 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     bool IsFaded();
     bool IsNear(vtkRenderer* renderer, vtkActor* actor);
     void FindVariant(vtkRenderer* renderer, vtkActor* actor);
+    bool ChooseBodies(vtkRenderer* renderer);
     void DrawTextured(vtkRenderer* renderer, const std::function<void()>& draw);
     void SetTexture(vtkShaderProgram* program);
     void SetClips(vtkOpenGLHelper& helper, vtkActor* actor, const double* view_to_data);
 
     int Shape = AXES;
     std::string AxesArray = "Axes", OrientationArray = "Orientation", TensorArray;
-    double ScaleFactor = 1;
+    double ScaleFactor = 1, Probability = 0;
+    int Style = PLAIN, InteractiveBodies = 250000;
     std::string TextureArray = "Texture", TextureOffsetArray = "TextureOffset";
     int TextureMapping = LATLONG;
 

@@ -59,6 +59,12 @@ std::vector<double> KeyFrames::at(double time) const {
     return result;
 }
 
+std::vector<double> KeyFrames::slopes(std::size_t frame) const {
+    std::vector<double> slopes(size(), 0.0);
+    for (std::size_t i = 0; i < size() && m_times.size() > 1; ++i) slopes[i] = slope(frame, i, 1);
+    return slopes;
+}
+
 /// Cubic Hermite interpolation from `frame` to the next, s in [0, 1).
 double KeyFrames::cubic(std::size_t frame, std::size_t number, double s) const {
     const double length = m_times[frame + 1] - m_times[frame];

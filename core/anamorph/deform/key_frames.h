@@ -33,6 +33,9 @@ class KeyFrames {
     /// The numbers at a time; before the first frame and after the last one, those of that frame. Throws Error on NaN.
     std::vector<double> at(double time) const;
 
+    /// The slopes of the numbers at a frame, of catmull_rom and monotone_cubic; those of the secants beside it at the ends.
+    std::vector<double> slopes(std::size_t frame) const;
+    const std::vector<std::vector<double>>& values() const { return m_values; }
     const std::vector<double>& times() const { return m_times; }
     /// The number of numbers in a frame.
     std::size_t size() const { return m_values.front().size(); }

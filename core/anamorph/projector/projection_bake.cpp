@@ -92,8 +92,10 @@ class Baking {
           m_options(options),
           m_rows(static_cast<std::size_t>(options.size.height)) {
         m_stride = options.channels + 1;
+        m_begin = std::min(options.begin_row, options.size.height);
+        m_end = std::clamp(options.end_row, m_begin, options.size.height);
         m_texture.pixels.assign(static_cast<std::size_t>(options.size.width) *
-                                    static_cast<std::size_t>(options.size.height) *
+                                    static_cast<std::size_t>(m_end - m_begin) *
                                     static_cast<std::size_t>(m_stride),
                                 0.0F);
         for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -128,7 +130,8 @@ class Baking {
   private:
     bool is_asked_for(std::size_t row) const {
         const auto first = static_cast<std::size_t>(m_options.first_row);
-        return row >= first && (row - first) % static_cast<std::size_t>(m_options.row_step) == 0;
+        return row >= static_cast<std::size_t>(m_begin) && row < static_cast<std::size_t>(m_end) &&
+               row >= first && (row - first) % static_cast<std::size_t>(m_options.row_step) == 0;
     }
 
     /// The texels of a row that a triangle has, or those that it has beyond its border.
@@ -170,7 +173,9 @@ class Baking {
             return;
         }
         ++m_painted;
-        float* to = &m_texture.pixels[static_cast<std::size_t>((j * m_options.size.width + i) * m_stride)];
+        float* to =
+            &m_texture
+                 .pixels[static_cast<std::size_t>(((j - m_begin) * m_options.size.width + i) * m_stride)];
         for (int c = 0; c < m_options.channels; ++c)
             to[c] = static_cast<float>(sum[static_cast<std::size_t>(c)] / all);
         to[m_options.channels] = 1;
@@ -182,6 +187,7 @@ class Baking {
     std::vector<FlatTriangle> m_flat;
     std::vector<std::vector<std::size_t>> m_rows;
     std::int64_t m_stride;
+    int m_begin = 0, m_end = 0;  ///< of the rows that the texture holds
     BakedTexture m_texture;
     std::atomic<std::int64_t> m_painted{0}, m_unseen{0};
 };
@@ -199,6 +205,8 @@ void check(const std::vector<ThrownPicture>& pictures, const BakeOptions& option
         refuse("margin", options.margin, "from 0 to 64");
     if (options.first_row < 0) refuse("first_row", options.first_row, "at least 0");
     if (options.row_step < 1) refuse("row_step", options.row_step, "at least 1");
+    if (options.begin_row < 0) refuse("begin_row", options.begin_row, "at least 0");
+    if (options.end_row < options.begin_row) refuse("end_row", options.end_row, "at least begin_row");
     for (const ThrownPicture& picture : pictures)
         if (!picture.pixels) throw Error("pictures", "none", "must have pixels");
 }

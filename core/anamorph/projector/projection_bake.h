@@ -53,13 +53,17 @@ struct BakeOptions {
     /// The first row that is made, and the step to the next ones, for processes that share the work; other rows stay 0.
     int first_row = 0;
     int row_step = 1;
+    /// The rows that the texture holds, from `begin_row` to before `end_row` or the last: a part of it, for processes that need no more.
+    int begin_row = 0;
+    int end_row = 1 << 30;
 };
 
 /// A baked texture: rows from the top, the channels of the pictures and one of coverage, 0 or 1.
 struct BakedTexture {
-    std::vector<float> pixels;  ///< colours, not multiplied by coverage; 0 where coverage is 0
-    std::int64_t painted = 0;   ///< texels that are painted
-    std::int64_t unseen = 0;    ///< texels of the mesh that no projector throws anything on
+    std::vector<float>
+        pixels;  ///< of the rows that it holds: colours, not multiplied by coverage; 0 where coverage is 0
+    std::int64_t painted = 0;  ///< texels that are painted
+    std::int64_t unseen = 0;   ///< texels of the mesh that no projector throws anything on
 };
 
 /// Bakes pictures into the texture of a mesh. A texel belongs to the first triangle that it lies in. The bits are the same for

@@ -62,6 +62,18 @@ void vtkAnamorphEllipsoidRepresentation::SetScaleFactor(double factor) {
     this->Ellipsoids()->SetScaleFactor(factor);
 }
 
+void vtkAnamorphEllipsoidRepresentation::SetProbability(double probability) {
+    this->Ellipsoids()->SetProbability(probability);
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetStyle(int style) {
+    this->Ellipsoids()->SetStyle(style);
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetInteractiveBodies(int count) {
+    this->Ellipsoids()->SetInteractiveBodies(count);
+}
+
 void vtkAnamorphEllipsoidRepresentation::SetTextureArray(const char* name) {
     this->Ellipsoids()->SetTextureArray(array_name(name));
 }

@@ -33,6 +33,9 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public
     void SetOrientationArray(const char* name);
     void SetTensorArray(const char* name);
     void SetScaleFactor(double factor);
+    void SetProbability(double probability);
+    void SetStyle(int style);
+    void SetInteractiveBodies(int count);
     void SetTextureArray(const char* name);
     void SetTextureMapping(int mapping);
     ///@}

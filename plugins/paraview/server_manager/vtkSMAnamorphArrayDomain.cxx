@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "vtkDataSetAttributes.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
@@ -19,17 +20,20 @@ vtkSMAnamorphArrayDomain::~vtkSMAnamorphArrayDomain() = default;
 
 void vtkSMAnamorphArrayDomain::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
-    os << indent << "ArrayName: " << this->ArrayName << "\n";
+    os << indent << "ArrayName: " << (this->ArrayName.empty() ? "(texture coordinates)" : this->ArrayName)
+       << "\n";
 }
 
 int vtkSMAnamorphArrayDomain::ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) {
     if (!this->Superclass::ReadXMLAttributes(property, element)) return 0;
     const char* name = element->GetAttribute("array_name");
-    if (!name) {
+    int texture = 0;
+    element->GetScalarAttribute("active_tcoords", &texture);
+    if (!name && !texture) {
         vtkErrorMacro("array_name is not given: must be the name of an array");
         return 0;
     }
-    this->ArrayName = name;
+    this->ArrayName = name ? name : "";
     return 1;
 }
 
@@ -43,8 +47,11 @@ int vtkSMAnamorphArrayDomain::IsInDomain(vtkSMProperty* property) {
         if (!source) return NOT_IN_DOMAIN;
         vtkPVDataInformation* data =
             source->GetDataInformation(inputs->GetUncheckedOutputPortForConnection(i));
-        vtkPVArrayInformation* array =
-            data ? data->GetArrayInformation(this->ArrayName.c_str(), this->GetAttributeType()) : nullptr;
+        vtkPVArrayInformation* array = nullptr;
+        if (data && this->ArrayName.empty())
+            array = data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::TCOORDS);
+        else if (data)
+            array = data->GetArrayInformation(this->ArrayName.c_str(), this->GetAttributeType());
         const auto fits = [&](int count) { return count == 0 || count == array->GetNumberOfComponents(); };
         if (!array || !(components.empty() || std::any_of(components.begin(), components.end(), fits)))
             return NOT_IN_DOMAIN;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * @class   vtkSMAnamorphArrayDomain
- * @brief   Inputs that have an array of a name.
+ * @brief   Inputs that have an array of a name, or texture coordinates.
  *
- * A vtkSMInputArrayDomain that asks for the array of its attribute array_name as well, of any of the numbers of
- * components that it allows: menus offer filters of figures where there are figures.
+ * A vtkSMInputArrayDomain that asks for the array of its attribute array_name as well, or, where active_tcoords is 1, for active
+ * texture coordinates, of any of the numbers of components that it allows: menus offer filters of figures where there are figures.
  */
 #ifndef vtkSMAnamorphArrayDomain_h
 #define vtkSMAnamorphArrayDomain_h
@@ -32,7 +32,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphArrayDomain : public vtkSMInputA
     vtkSMAnamorphArrayDomain(const vtkSMAnamorphArrayDomain&) = delete;
     void operator=(const vtkSMAnamorphArrayDomain&) = delete;
 
-    std::string ArrayName;
+    std::string ArrayName;  ///< empty: texture coordinates
 };
 
 #endif

@@ -15,6 +15,9 @@ inline constexpr NumberRow kSphereTolRow{"sphere_tol", 1, 0, NumberRow::kNoEnd, 
 /// The width up to which a body is drawn as a dot, in pixels; 0: all bodies are drawn whole.
 inline constexpr NumberRow kLevelOfDetailRow{"level_of_detail", 0, 0};
 
+/// The probability with which ellipsoids of displacement hold their atoms, as of ORTEP.
+inline constexpr NumberRow kProbabilityRow{"probability", 0.5, 0, 1, NumberRow::between};
+
 /// The width and height of a view, in pixels.
 inline constexpr NumberRow kViewSizeRow{"view_size", 500, 1, NumberRow::kNoEnd, NumberRow::closed, true};
 /// Half the height of an orthographic view, in units of the scene.
@@ -22,8 +25,8 @@ inline constexpr NumberRow kParallelScaleRow{"camera_parallel_scale", 500, 0, 1e
 /// The angle from bottom to top of a view in perspective, in degrees.
 inline constexpr NumberRow kViewAngleRow{"camera_view_angle", 30, 0, 180, NumberRow::between};
 
-inline constexpr NumberRow kFigureRows[] = {kSurfaceTolRow,    kOutlineTolRow, kSphereTolRow,
-                                            kLevelOfDetailRow, kViewSizeRow,   kParallelScaleRow,
-                                            kViewAngleRow};
+inline constexpr NumberRow kFigureRows[] = {kSurfaceTolRow,    kOutlineTolRow,  kSphereTolRow,
+                                            kLevelOfDetailRow, kProbabilityRow, kViewSizeRow,
+                                            kParallelScaleRow, kViewAngleRow};
 
 }  // namespace anamorph::figure

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <optional>
 
+#include "anamorph/figure/body/displacement.h"
 #include "anamorph/figure/body/eigenvectors.h"
 #include "anamorph/figure/body/elements.h"
 #include "anamorph/figure/body/rotation.h"
@@ -27,8 +28,6 @@ namespace {
 constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000, kMostOperations = 1000, kMostWarnings = 20;
 /// The least length of a cell's edge, in Angstrom.
 constexpr double kLeastLength = 0.1;
-/// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
-constexpr double kHalfProbability = 1.5381722544550522;
 /// The radius of atoms without displacement, and the length that bonds may have beyond radii; Angstrom.
 constexpr double kPlainRadius = 0.15, kBondSlack = 0.4;
 
@@ -554,7 +553,8 @@ WindowFit fit_of(const std::vector<Atom>& atoms) {
 
 class CrystalMotion final : public Motion {
   public:
-    CrystalMotion(std::string_view text, std::string_view name) {
+    CrystalMotion(std::string_view text, std::string_view name, double probability) {
+        const double larger = displacement_scale(probability) / kHalfProbability;
         const Structure structure(text, name);
         m_warnings = structure.warnings;
         const std::vector<Atom>& atoms = structure.atoms;
@@ -565,6 +565,9 @@ class CrystalMotion final : public Motion {
             Body body;
             body.name = atom.label;
             body.shape = fit.ellipsoid(atom.shape);
+            // The view stays that of 1/2, and so do atoms without displacement.
+            if (probability != 0.5 && (atom.tensor || (atom.isotropic && *atom.isotropic > 0)))
+                body.shape.axes *= larger;
             if (atom.element) body.color = atom.element->color;
             m_frame.bodies.push_back(std::move(body));
         }
@@ -593,8 +596,8 @@ class CrystalMotion final : public Motion {
 
 }  // namespace
 
-std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name) {
-    return std::make_unique<CrystalMotion>(text, name);
+std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name, double probability) {
+    return std::make_unique<CrystalMotion>(text, name, probability);
 }
 
 }  // namespace anamorph::figure

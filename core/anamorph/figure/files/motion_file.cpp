@@ -47,9 +47,9 @@ bool is_motion_file(std::string_view name) {
     return false;
 }
 
-std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name) {
+std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name, double probability) {
     if (text_file::ends_with(name, ".bvh")) return read_bvh(text, name);
-    if (text_file::ends_with(name, ".cif")) return read_cif(text, name);
+    if (text_file::ends_with(name, ".cif")) return read_cif(text, name, probability);
     if (text_file::ends_with(name, ".mrasel"))
         return std::make_unique<KeptFrames>(std::vector{mrasel_frame(text, name)});
     std::vector<FigureFrame> frames = parse_frames(text, name);

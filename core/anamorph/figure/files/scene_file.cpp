@@ -12,7 +12,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <initializer_list>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/body/surface_steps.h"
 #include "anamorph/figure/body/window_fit.h"
+#include "anamorph/parameter/gltf_buffer.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 #include "anamorph/version.h"
@@ -27,7 +27,7 @@
 namespace anamorph::figure {
 namespace {
 
-using Json = nlohmann::json;
+using gltf::Json;
 
 constexpr SurfaceSteps kUsualSteps{24, 48};
 constexpr long long kMostTriangles = 1LL << 22;  ///< of all bodies
@@ -67,6 +67,13 @@ struct UnitSphere {
     }
 };
 
+std::vector<std::uint32_t> corners_of(const UnitSphere& sphere) {
+    std::vector<std::uint32_t> corners;
+    for (const auto& triangle : sphere.triangles)
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    return corners;
+}
+
 /// The steps of each body, of the given half-axes.
 std::vector<SurfaceSteps> steps_of(const std::vector<Body>& bodies, const std::vector<glm::dvec3>& axes,
                                    std::optional<double> tolerance) {
@@ -93,65 +100,6 @@ float as_float(double value) {
         throw Error("a number of the figures, " + shortest(value) + ", does not fit float");
     return narrow;
 }
-
-/// The bytes of a glTF file and what they hold.
-class Buffer {
-  public:
-    /// An accessor of `width` floats each; `bounds`: with the least and greatest of each.
-    int add_floats(const std::vector<float>& values, int width, bool bounds, int target = 0) {
-        static constexpr const char* kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-        constexpr int kFloat = 5126;
-        Json accessor = view(values.data(), values.size() * sizeof(float), target);
-        accessor["componentType"] = kFloat;
-        accessor["count"] = values.size() / static_cast<std::size_t>(width);
-        accessor["type"] = kTypes[width];
-        if (bounds)
-            for (int c = 0; c < width; ++c) {
-                float least = HUGE_VALF, most = -HUGE_VALF;
-                for (std::size_t i = static_cast<std::size_t>(c); i < values.size();
-                     i += static_cast<std::size_t>(width)) {
-                    least = std::min(least, values[i]);
-                    most = std::max(most, values[i]);
-                }
-                accessor["min"].push_back(least);
-                accessor["max"].push_back(most);
-            }
-        return add(accessor);
-    }
-    /// Of so many points; in two bytes each where these hold them.
-    int add_indices(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::size_t points) {
-        constexpr int kShort = 5123, kInt = 5125, kElementArray = 34963;
-        const bool fit_short = points <= 0xffff;
-        std::vector<std::uint16_t> narrow;
-        for (const auto& triangle : triangles)
-            for (const std::uint32_t corner : triangle)
-                if (fit_short) narrow.push_back(static_cast<std::uint16_t>(corner));
-        Json accessor = fit_short
-                            ? view(narrow.data(), narrow.size() * sizeof(narrow[0]), kElementArray)
-                            : view(triangles.data(), triangles.size() * sizeof(triangles[0]), kElementArray);
-        accessor["componentType"] = fit_short ? kShort : kInt;
-        accessor["count"] = 3 * triangles.size();
-        accessor["type"] = "SCALAR";
-        return add(accessor);
-    }
-
-    std::string bytes;
-    Json views = Json::array(), accessors = Json::array();
-
-  private:
-    Json view(const void* data, std::size_t size, int target) {
-        Json view{{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", size}};
-        if (target) view["target"] = target;
-        bytes.append(static_cast<const char*>(data), size);
-        bytes.append((4 - bytes.size() % 4) % 4, '\0');
-        views.push_back(view);
-        return {{"bufferView", views.size() - 1}};
-    }
-    int add(const Json& accessor) {
-        accessors.push_back(accessor);
-        return static_cast<int>(accessors.size()) - 1;
-    }
-};
 
 void append(std::vector<float>& values, std::initializer_list<double> more) {
     for (const double value : more) values.push_back(as_float(value));
@@ -203,7 +151,6 @@ class Scene {
 
     std::string file() {
         Json json;
-        json["asset"] = {{"version", "2.0"}, {"generator", std::string("Anamorph ") + version()}};
         json["scene"] = 0;
         json["scenes"] = Json::array({Json{{"nodes", m_roots}}});
         json["nodes"] = m_nodes;
@@ -211,31 +158,13 @@ class Scene {
             json["meshes"] = m_meshes;
             json["materials"] = m_materials;
         }
-        json["accessors"] = m_buffer.accessors;
-        json["bufferViews"] = m_buffer.views;
-        json["buffers"] = Json::array({Json{{"byteLength", m_buffer.bytes.size()}}});
         if (!m_channels.empty())
             json["animations"] =
                 Json::array({Json{{"name", "motion"}, {"channels", m_channels}, {"samplers", m_samplers}}});
-        std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-        text.append((4 - text.size() % 4) % 4, ' ');
-        constexpr std::uint32_t kMagic = 0x46546c67, kVersion = 2, kJson = 0x4e4f534a, kBinary = 0x004e4942;
-        std::string file;
-        const std::size_t size = 12 + 8 + text.size() + 8 + m_buffer.bytes.size();
-        if (size > 0xffffffff) throw Error("the frames do not fit a file of 4 GB");
-        add_words(file, {kMagic, kVersion, static_cast<std::uint32_t>(size),
-                         static_cast<std::uint32_t>(text.size()), kJson});
-        file += text;
-        add_words(file, {static_cast<std::uint32_t>(m_buffer.bytes.size()), kBinary});
-        return file + m_buffer.bytes;
+        return gltf::glb(json, m_buffer);
     }
 
   private:
-    static void add_words(std::string& file, std::initializer_list<std::uint32_t> words) {
-        for (const std::uint32_t word : words)
-            for (int k = 0; k < 4; ++k) file += static_cast<char>(word >> (8 * k) & 0xff);
-    }
-
     void add_figures() {
         for (const std::string& name : m_frames[0].figures) {
             m_roots.push_back(m_nodes.size());
@@ -297,10 +226,9 @@ class Scene {
         const UnitSphere sphere(steps);
         std::vector<float> points;
         for (const glm::dvec3& p : sphere.points) append(points, {p.x, p.y, p.z});
-        constexpr int kArray = 34962;
-        const int point_accessor = m_buffer.add_floats(points, 3, true, kArray);
+        const int point_accessor = m_buffer.add_floats(points, 3, true, gltf::kArrayBuffer);
         m_spheres.push_back({steps.rows, steps.columns, point_accessor,
-                             m_buffer.add_indices(sphere.triangles, sphere.points.size())});
+                             m_buffer.add_indices(corners_of(sphere), sphere.points.size())});
     }
 
     /// The sphere of these steps in a color.
@@ -337,7 +265,7 @@ class Scene {
 
     std::span<const FigureFrame> m_frames;
     std::vector<SurfaceSteps> m_steps;  ///< of the bodies
-    Buffer m_buffer;
+    gltf::Buffer m_buffer;
     int m_times = 0;
     std::vector<glm::dvec3> m_colors;
     std::vector<Sphere> m_spheres;
