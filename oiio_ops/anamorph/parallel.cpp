@@ -81,4 +81,9 @@ ParallelFor parallel_for_on(OIIO::thread_pool& pool, int threads) {
     };
 }
 
+ParallelFor default_parallel_for(int threads) {
+    OIIO::thread_pool& pool = *OIIO::default_thread_pool();
+    return parallel_for_on(pool, threads > 0 ? threads : pool.size() + 1);
+}
+
 }  // namespace anamorph

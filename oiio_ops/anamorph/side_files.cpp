@@ -127,11 +127,11 @@ auto naming(const std::string& key, const Read& read) {
 std::string KeyedFileReader::text(const std::string& name) const {
     const auto named = std::find_if(m_files.begin(), m_files.end(),
                                     [&](const auto& file) { return file.second.name == name; });
-    return naming(named == m_files.end() ? "" : named->first, [&] { return side_file_reader().text(name); });
+    return naming(named == m_files.end() ? "" : named->first, [&] { return m_reader.text(name); });
 }
 
 std::unique_ptr<SideImage> KeyedFileReader::image(const std::string& key, const std::string& name) const {
-    return naming(key, [&] { return side_file_reader().image(key, name); });
+    return naming(key, [&] { return m_reader.image(key, name); });
 }
 
 }  // namespace anamorph
