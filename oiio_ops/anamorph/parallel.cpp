@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace anamorph {
 namespace {
@@ -46,7 +47,8 @@ class Loop {
         std::unique_lock lock(m_mutex);
         m_over = true;
         m_left.wait(lock, [this] { return m_helpers == 0; });
-        if (m_failure) std::rethrow_exception(m_failure);
+        // The caller's alone: a task that the pool still holds would let go of it on some thread, at some time.
+        if (m_failure) std::rethrow_exception(std::exchange(m_failure, nullptr));
     }
 
   private:
