@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace anamorph {
 namespace {
@@ -46,7 +47,8 @@ class Loop {
         std::unique_lock lock(m_mutex);
         m_over = true;
         m_left.wait(lock, [this] { return m_helpers == 0; });
-        if (m_failure) std::rethrow_exception(m_failure);
+        // The caller's alone: a task that the pool still holds would let go of it on some thread, at some time.
+        if (m_failure) std::rethrow_exception(std::exchange(m_failure, nullptr));
     }
 
   private:
@@ -79,6 +81,11 @@ ParallelFor parallel_for_on(OIIO::thread_pool& pool, int threads) {
         loop->work();
         loop->finish();
     };
+}
+
+ParallelFor default_parallel_for(int threads) {
+    OIIO::thread_pool& pool = *OIIO::default_thread_pool();
+    return parallel_for_on(pool, threads > 0 ? threads : pool.size() + 1);
 }
 
 }  // namespace anamorph

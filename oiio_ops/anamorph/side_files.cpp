@@ -155,12 +155,12 @@ auto naming(const std::string& key, const Read& read) {
 std::string KeyedFileReader::text(const std::string& name) const {
     const auto named = std::find_if(m_files.begin(), m_files.end(),
                                     [&](const auto& file) { return file.second.name == name; });
-    return naming(named == m_files.end() ? "" : named->first, [&] { return side_file_reader().text(name); });
+    return naming(named == m_files.end() ? "" : named->first, [&] { return m_reader.text(name); });
 }
 
 std::unique_ptr<SideImage> KeyedFileReader::image(const std::string& key, const std::string& name) const {
-    auto image = naming(key, [&] { return std::make_unique<OiioImage>(key, name); });
-    if (image->has_more_parts())
+    std::unique_ptr<SideImage> image = naming(key, [&] { return m_reader.image(key, name); });
+    if (const auto* opened = dynamic_cast<const OiioImage*>(image.get()); opened && opened->has_more_parts())
         for (const auto& [k, file] : m_files)
             if (file.name == name && !file.identity.empty()) FilesOfParts::instance().add(file.identity);
     return image;

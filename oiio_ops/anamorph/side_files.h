@@ -10,16 +10,18 @@ namespace anamorph {
 /// calling thread alone.
 const SideFileReader& side_file_reader();
 
-/// The same, whose errors begin with the key that a file is named by: "mesh: file ... does not exist". Keeps a reference.
+/// A reader whose errors begin with the key that a file is named by: "mesh: file ... does not exist". Keeps references.
 class KeyedFileReader final : public SideFileReader {
   public:
-    explicit KeyedFileReader(const SideFiles& files) : m_files(files) {}
+    explicit KeyedFileReader(const SideFiles& files, const SideFileReader& reader = side_file_reader())
+        : m_files(files), m_reader(reader) {}
     std::string text(const std::string& name) const override;
-    bool exists(const std::string& name) const override { return side_file_reader().exists(name); }
+    bool exists(const std::string& name) const override { return m_reader.exists(name); }
     std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const override;
 
   private:
     const SideFiles& m_files;
+    const SideFileReader& m_reader;
 };
 
 /// Has an image that was opened as this file, in the state that its identity tells, several parts, of which the first is read?

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 BUILD = os.environ["ANAMORPH_BUILD_DIR"]
-NAMES = ["anamorph", "anamorph-openimageio", "libanamorph-dev"]
+NAMES = ["anamorph", "anamorph-openimageio", "libanamorph-dev", "python3-anamorph"]
 
 
 def output(*command, **more):

@@ -83,6 +83,13 @@ bool BlockMap::covers(const Box& box) const {
     return pixels == std::int64_t{box.width()} * box.height();
 }
 
+int BlockMap::piece_at(double x, double y) const {
+    for (auto grid = m_grids.rbegin(); grid != m_grids.rend(); ++grid)
+        if (const Box& box = grid->box; x >= box.x0 && x <= box.x1 && y >= box.y0 && y <= box.y1)
+            return static_cast<int>(m_grids.rend() - grid) - 1;
+    return -1;
+}
+
 SharedBlocks BlockMap::blocks(std::int64_t region) const {
     std::shared_ptr<Cache::Region> found;
     {

@@ -157,6 +157,9 @@ class BlockMap {
     /// Does every pixel of a box belong to a piece?
     bool covers(const Box& box) const;
 
+    /// The piece of the first layer that a target point lies in, its edges included, of two the later one; -1 where there is none.
+    int piece_at(double x, double y) const;
+
     std::int64_t regions() const { return m_regions; }
     /// The pixels of a region.
     Box region_box(std::int64_t region) const { return place_of(region).box; }

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "anamorph/image/picture.h"
+#include "anamorph/image_source.h"
+#include "anamorph/metadata.h"
+
+namespace anamorph {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ROI;
+
+ImageSpec spec_of(const ArrayPixels& pixels) {
+    constexpr std::int64_t kMost = std::numeric_limits<int>::max();
+    if (pixels.width < 1 || pixels.height < 1 || pixels.channels < 1 || pixels.width > kMost ||
+        pixels.height > kMost || pixels.channels > kMost)
+        throw Error("an array of " + std::to_string(pixels.height) + " rows, " +
+                    std::to_string(pixels.width) + " columns and " + std::to_string(pixels.channels) +
+                    " channels: must have 1 to 2147483647 of each");
+    return {static_cast<int>(pixels.width), static_cast<int>(pixels.height),
+            static_cast<int>(pixels.channels), pixels.type};
+}
+
+ImageSpec spec_of(const ArrayPixels& pixels, const ArrayFacts& facts) {
+    ImageSpec spec = spec_of(pixels);
+    if (!facts.channels.empty()) {
+        if (std::ssize(facts.channels) != spec.nchannels)
+            throw Error("channels", std::to_string(facts.channels.size()) + " names",
+                        "must be " + std::to_string(spec.nchannels) + ", one for each channel");
+        spec.channelnames = facts.channels;
+        for (int c = 0; c < spec.nchannels; ++c)
+            if (facts.channels[static_cast<std::size_t>(c)] == "A") spec.alpha_channel = c;
+    }
+    spec.x = facts.x;
+    spec.y = facts.y;
+    const Box shown = facts.display.empty()
+                          ? Box{facts.x, facts.y, facts.x + spec.width, facts.y + spec.height}
+                          : facts.display;
+    spec.full_x = shown.x0;
+    spec.full_y = shown.y0;
+    spec.full_width = shown.width();
+    spec.full_height = shown.height();
+    if (facts.unassociated) spec.attribute("oiio:UnassociatedAlpha", 1);
+    add_attributes(spec, facts.metadata);
+    check_source(spec, "array");
+    return spec;
+}
+
+/// An image in memory, as its numbers are stored.
+class MemoryImage final : public SideImage {
+  public:
+    explicit MemoryImage(const ImageBuf& image) : m_image(image) {}
+    Size size() const override { return {m_image.spec().width, m_image.spec().height}; }
+    Box display() const override {
+        const ImageSpec& spec = m_image.spec();
+        const int x = spec.full_x - spec.x, y = spec.full_y - spec.y;
+        return {x, y, x + spec.full_width, y + spec.full_height};
+    }
+    int channels() const override { return m_image.nchannels(); }
+    int alpha() const override { return m_image.spec().alpha_channel; }
+    std::vector<float> read(int count) override {
+        std::vector<float> pixels(static_cast<std::size_t>(size().width) *
+                                  static_cast<std::size_t>(size().height) * static_cast<std::size_t>(count));
+        ROI roi = m_image.roi();
+        roi.chend = count;
+        if (!m_image.get_pixels(roi, OIIO::TypeFloat, pixels.data())) throw Error(m_image.geterror());
+        return pixels;
+    }
+
+  private:
+    const ImageBuf& m_image;
+};
+
+class MemoryReader final : public SideFileReader {
+  public:
+    explicit MemoryReader(const MemoryFiles& files) : m_files(files) {}
+    std::string text(const std::string& name) const override {
+        const auto found = m_files.texts.find(name);
+        return found != m_files.texts.end() ? found->second : side_file_reader().text(name);
+    }
+    bool exists(const std::string& name) const override {
+        return m_files.texts.contains(name) || side_file_reader().exists(name);
+    }
+    std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const override {
+        const auto found = m_files.images.find(name);
+        if (found != m_files.images.end()) return std::make_unique<MemoryImage>(found->second->image());
+        return side_file_reader().image(key, name);
+    }
+
+  private:
+    const MemoryFiles& m_files;
+};
+
+const Operation& operation_of(const std::string& name) {
+    if (const Operation* operation = find_operation(name)) return *operation;
+    throw Error("operation", printable(name), "must be one of " + operation_names());
+}
+
+}  // namespace
+
+ArraySource::ArraySource(const ArrayPixels& pixels, const ArrayFacts& facts)
+    : m_image(spec_of(pixels, facts), pixels.data, pixels.pixel_stride, pixels.row_stride) {}
+
+ArraySource::ArraySource(const std::string& file) : m_image(file) {}
+
+ArrayPicture::ArrayPicture(const std::string& operation, const std::vector<Assignment>& assignments,
+                           const std::vector<Input>& sources, MemoryFiles files, int subimage,
+                           const ParallelFor& parallel_for)
+    : m_operation(operation), m_sources(sources), m_files(std::move(files)) {
+    const Operation& known = operation_of(operation);
+    ParameterValues values(*known.parameters);
+    values.assign(assignments);
+    std::vector<BufferPicture::SourceInput> inputs;
+    for (const Input& source : sources)
+        inputs.push_back({source.array ? &source.array->image() : nullptr,
+                          source.picture ? source.picture->m_picture : nullptr});
+    m_picture = std::make_shared<const BufferPicture>(known, values, inputs, parallel_for,
+                                                      MemoryReader(m_files), subimage);
+}
+
+void ArrayPicture::draw(const ArrayPixels& to, int x, int y, const ParallelFor& parallel_for,
+                        const std::function<void(int rows)>& progress) const {
+    ImageSpec spec = this->spec();
+    const ImageSpec drawn = spec_of(to);
+    if (drawn.nchannels != spec.nchannels)
+        throw Error("out", std::to_string(drawn.nchannels) + " channels",
+                    "must have " + std::to_string(spec.nchannels));
+    spec.x = x;
+    spec.y = y;
+    spec.width = drawn.width;
+    spec.height = drawn.height;
+    spec.set_format(to.type);
+    ImageBuf image(spec, to.data, to.pixel_stride, to.row_stride);
+    if (!progress) return m_picture->fill(image, image.roi(), parallel_for);
+    // Bands begin where the rows of the maps' regions do.
+    constexpr int kRows = BlockMap::kRegion;
+    for (int done = 0; done < spec.height;) {
+        const int first = y + done,
+                  rows = std::min(spec.height - done, kRows - ((first % kRows) + kRows) % kRows);
+        m_picture->fill(image, ROI(x, x + spec.width, first, first + rows, 0, 1, 0, spec.nchannels),
+                        parallel_for);
+        done += rows;
+        progress(rows);
+    }
+}
+
+const BlockMap& ArrayPicture::map() const {
+    const Picture* picture = m_picture->of_maps();
+    if (!picture || picture->maps.size() != 1 || picture->maps[0].layers.size() != 1)
+        throw Error("the picture of " + m_operation +
+                    " has no single source point: it is not one map of one source");
+    return *picture->maps[0].blocks;
+}
+
+template <class Found>
+void ArrayPicture::each(const PointArrays& points, const ParallelFor& parallel_for,
+                        const Found& found) const {
+    constexpr std::int64_t kAtOnce = 1024;
+    const BlockMap& map = this->map();
+    parallel_for((points.count + kAtOnce - 1) / kAtOnce, [&](std::int64_t part) {
+        const std::int64_t end = std::min(points.count, (part + 1) * kAtOnce);
+        for (std::int64_t i = part * kAtOnce; i < end; ++i)
+            found(i, map, map.piece_at(points.x[i], points.y[i]));
+    });
+}
+
+void ArrayPicture::source_points(const PointArrays& points, double* x, double* y,
+                                 const ParallelFor& parallel_for) const {
+    each(points, parallel_for, [&](std::int64_t i, const BlockMap& map, int piece) {
+        Point<double> point;
+        int source_piece = 0;
+        if (piece < 0 || !map.exact(points.x[i], points.y[i], piece, point, source_piece))
+            point = {std::nan(""), std::nan("")};
+        x[i] = point.x;
+        y[i] = point.y;
+    });
+}
+
+void ArrayPicture::jacobians(const PointArrays& points, double* derivatives,
+                             const ParallelFor& parallel_for) const {
+    each(points, parallel_for, [&](std::int64_t i, const BlockMap& map, int piece) {
+        const double none = std::nan("");
+        Jacobian j{none, none, none, none};
+        if (piece >= 0 && map.seen(points.x[i], points.y[i], piece))
+            j = map.jacobian(points.x[i], points.y[i], piece);
+        const double values[4] = {j.x_i, j.x_j, j.y_i, j.y_j};
+        std::copy_n(values, 4, derivatives + 4 * i);
+    });
+}
+
+}  // namespace anamorph
