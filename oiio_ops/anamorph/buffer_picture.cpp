@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <variant>
 
 #include "anamorph/chain/joined.h"
 #include "anamorph/file_names.h"
@@ -144,6 +145,15 @@ bool is_stored_alike(const BufferPicture::SourceInput& source) {
     return source.image->localpixels() && source.image->spec().channelformats.empty();
 }
 
+/// The tolerance that a picture says; null where it says none.
+template <class SomeAttributes>
+auto* tolerance_in(SomeAttributes& said) {
+    const auto found = std::find_if(said.begin(), said.end(), [](const Attribute& attribute) {
+        return attribute.name == "anamorph:tol";
+    });
+    return found == said.end() ? nullptr : std::get_if<double>(&found->value);
+}
+
 PictureRequest picture_of(const Pictures& pictures, int subimage) {
     if (subimage < 0 || subimage >= pictures.frames())
         throw Error("subimage", std::to_string(subimage),
@@ -220,6 +230,12 @@ std::string BufferPicture::join(const BufferPicture& inner) {
     m_picture = solved(*joined.picture);
     m_stacks = inner.m_stacks;
     m_chain += " of " + inner.m_chain;
+    // What is joined holds both tolerances.
+    if (double* const own = tolerance_in(m_said))
+        if (const double* const other = tolerance_in(inner.m_said)) {
+            *own = std::min(*own, *other);
+            m_spec.attribute("anamorph:tol", static_cast<float>(*own));
+        }
     return "";
 }
 

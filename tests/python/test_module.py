@@ -214,6 +214,8 @@ class Recipes(unittest.TestCase):
         inner = anamorph.Picture("pano", panorama, fov=70, size=(64, 48))
         outer = anamorph.Picture("warp", inner, mesh=SHEET)
         self.assertEqual(outer.said["anamorph:chain"], "warp of pano")
+        fine = anamorph.Picture("pano", panorama, fov=70, size=(64, 48), tol=0.001)
+        self.assertEqual(anamorph.Picture("warp", fine, mesh=SHEET).said["anamorph:tol"], 0.001)
         pathlib.Path("sheet.json").write_text(json.dumps(SHEET))
         name = "c.tif.pano?fov=70&size=64x48"
         self.check(outer.draw(), f"sheet.warp?mesh=sheet.json&src=({name})")

@@ -231,8 +231,11 @@ const SummedAreas* Pyramid::summed_areas() const noexcept try {
 
 bool Pyramid::make_tile(int level, const Box& tile) const {
     const Level& to = at(level);
-    // What the image has nothing of is 0 as it stands, however large its picture is.
-    if (intersection(texels_over(tile, to.size, size(0)), data_window()).empty()) return true;
+    // What the image has nothing of is 0 as it stands, however large its picture is. Level by level, since texels of odd sizes reach
+    // farther so than by one step to the base.
+    Box under = tile;
+    for (int finer = level - 1; finer >= 0; --finer) under = texels_over(under, size(finer + 1), size(finer));
+    if (intersection(under, data_window()).empty()) return true;
     const Size finer = size(level - 1);
     const std::vector<TexelSpan> across = spans_of(tile.x0, tile.x1, finer.width, to.size.width);
     const std::vector<TexelSpan> down = spans_of(tile.y0, tile.y1, finer.height, to.size.height);
