@@ -129,6 +129,11 @@ void ArrayPicture::draw(const ArrayPixels& to, int x, int y, const ParallelFor& 
                         const std::function<void(int rows)>& progress) const {
     ImageSpec spec = this->spec();
     const ImageSpec drawn = spec_of(to);
+    // Corners are added to and subtracted from.
+    constexpr std::int64_t kFarthest = std::int64_t{1} << 30;
+    if (x < -kFarthest || y < -kFarthest || x + to.width > kFarthest || y + to.height > kFarthest)
+        throw Error("roi", std::to_string(x) + "," + std::to_string(y) + ",...",
+                    "must lie within " + std::to_string(kFarthest) + " pixels of (0, 0)");
     if (drawn.nchannels != spec.nchannels)
         throw Error("out", std::to_string(drawn.nchannels) + " channels",
                     "must have " + std::to_string(spec.nchannels));
@@ -164,19 +169,26 @@ void ArrayPicture::each(const PointArrays& points, const ParallelFor& parallel_f
                         const Found& found) const {
     constexpr std::int64_t kAtOnce = 1024;
     const BlockMap& map = this->map();
+    // Points are counted from the display window's corner, as maps are that know of overscan; others begin at the data window's.
+    const ImageSpec& windows = spec();
+    const Size& known = m_picture->of_maps()->overscan;
+    const Point<double> corner{static_cast<double>(windows.full_x - windows.x - known.width),
+                               static_cast<double>(windows.full_y - windows.y - known.height)};
     parallel_for((points.count + kAtOnce - 1) / kAtOnce, [&](std::int64_t part) {
         const std::int64_t end = std::min(points.count, (part + 1) * kAtOnce);
-        for (std::int64_t i = part * kAtOnce; i < end; ++i)
-            found(i, map, map.piece_at(points.x[i], points.y[i]));
+        for (std::int64_t i = part * kAtOnce; i < end; ++i) {
+            const Point<double> at = Point<double>{points.x[i], points.y[i]} + corner;
+            found(i, map, at, map.piece_at(at.x, at.y));
+        }
     });
 }
 
 void ArrayPicture::source_points(const PointArrays& points, double* x, double* y,
                                  const ParallelFor& parallel_for) const {
-    each(points, parallel_for, [&](std::int64_t i, const BlockMap& map, int piece) {
+    each(points, parallel_for, [&](std::int64_t i, const BlockMap& map, const Point<double>& at, int piece) {
         Point<double> point;
         int source_piece = 0;
-        if (piece < 0 || !map.exact(points.x[i], points.y[i], piece, point, source_piece))
+        if (piece < 0 || !map.exact(at.x, at.y, piece, point, source_piece))
             point = {std::nan(""), std::nan("")};
         x[i] = point.x;
         y[i] = point.y;
@@ -185,11 +197,10 @@ void ArrayPicture::source_points(const PointArrays& points, double* x, double* y
 
 void ArrayPicture::jacobians(const PointArrays& points, double* derivatives,
                              const ParallelFor& parallel_for) const {
-    each(points, parallel_for, [&](std::int64_t i, const BlockMap& map, int piece) {
+    each(points, parallel_for, [&](std::int64_t i, const BlockMap& map, const Point<double>& at, int piece) {
         const double none = std::nan("");
         Jacobian j{none, none, none, none};
-        if (piece >= 0 && map.seen(points.x[i], points.y[i], piece))
-            j = map.jacobian(points.x[i], points.y[i], piece);
+        if (piece >= 0 && map.seen(at.x, at.y, piece)) j = map.jacobian(at.x, at.y, piece);
         const double values[4] = {j.x_i, j.x_j, j.y_i, j.y_j};
         std::copy_n(values, 4, derivatives + 4 * i);
     });

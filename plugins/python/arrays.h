@@ -93,7 +93,7 @@ class ArrayPicture {
   private:
     /// The one map of the picture. Throws Error where there are several, or none.
     const BlockMap& map() const;
-    /// Calls `found(i, point, piece)` for each point; piece -1 beside the picture.
+    /// Calls `found(i, map, at, piece)` for each point, as the map counts it; piece -1 beside the picture.
     template <class Found>
     void each(const PointArrays& points, const ParallelFor& parallel_for, const Found& found) const;
 

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
@@ -154,6 +155,13 @@ class ModulePicture {
         }
         return "value";
     }
+    /// The arrays that are read.
+    py::list arrays() const {
+        py::list list;
+        for (const py::object& array : m_arrays)
+            if (!array.is_none()) list.append(array);
+        return list;
+    }
     int subimages() const { return m_picture->subimages(); }
     py::dict said() const { return dict_of(m_picture->said()); }
     py::dict reached(int threads) const {
@@ -257,7 +265,10 @@ Window window(int x, int y, int width, int height) {
 
 /// Hands errors on as anamorph.Error, which names the parameter.
 void throw_as(const py::handle& type, const Error& error) {
-    const py::object raised = type(std::string(error.what()));
+    // Names of files may be no text.
+    const py::object words = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(error.what(), static_cast<py::ssize_t>(std::strlen(error.what())), "replace"));
+    const py::object raised = type(words);
     raised.attr("parameter") = error.parameter();
     PyErr_SetObject(type.ptr(), raised.ptr());
 }
@@ -270,7 +281,7 @@ PYBIND11_MODULE(_core, m) {
     static PyObject* const error_type = PyErr_NewExceptionWithDoc(
         "anamorph.Error",
         "A parameter or an image that cannot be taken: `parameter` is the key that is to blame, or empty.",
-        PyExc_ValueError, nullptr);
+        PyExc_ValueError, py::dict(py::arg("parameter") = "").ptr());
     m.attr("Error") = py::reinterpret_borrow<py::object>(error_type);
     py::register_exception_translator([](std::exception_ptr failure) {
         try {
@@ -299,6 +310,7 @@ PYBIND11_MODULE(_core, m) {
                       const std::map<std::string, std::string>&,
                       const std::map<std::string, const ModuleSource*>&, int, int>())
         .def_property_readonly("kind", &ModulePicture::kind)
+        .def_property_readonly("arrays", &ModulePicture::arrays)
         .def_property_readonly("subimages", &ModulePicture::subimages)
         .def_property_readonly("dtype", [](const ModulePicture& p) { return dtype_of(p.spec().format); })
         .def_property_readonly("channels", [](const ModulePicture& p) { return p.spec().channelnames; })

@@ -132,6 +132,17 @@ class Formulas(unittest.TestCase):
         np.testing.assert_allclose(u % 256, stmap[..., 0] * 256 % 256, atol=1e-4)
         np.testing.assert_allclose(v, stmap[..., 1] * 128, atol=1e-4)
 
+    def test_points_of_warps_with_overscan(self):
+        square = {"columns": 1, "rows": 1, "vertices": [[0, 0], [8, 0], [0, 8], [8, 8]]}
+        x, y = np.meshgrid(np.arange(-1.5, 10), np.arange(-1.5, 10))
+        for overscan in (0, 2):
+            picture = anamorph.Picture("warp", noise(8, 8), mesh=square, size=(8, 8), overscan=overscan)
+            u, v = picture.source_points(x, y)
+            inside = (np.maximum(np.abs(x - 4), np.abs(y - 4)) < 4 + overscan)
+            np.testing.assert_allclose(u[inside], x[inside], atol=1e-12)
+            np.testing.assert_allclose(v[inside], y[inside], atol=1e-12)
+            self.assertTrue(np.isnan(u[~inside]).all())
+
     def test_tolerance(self):
         picture = anamorph.Picture("pano", self.panorama, tol=1e-4, **self.keys)
         self.assertAlmostEqual(picture.said["anamorph:tol"], 1e-4)
@@ -322,6 +333,26 @@ class Arrays(unittest.TestCase):
         bytes_ = anamorph.pano(panorama, out=np.empty((21, 33, 3), np.uint8), **self.KEYS)
         np.testing.assert_array_equal(bytes_, np.floor(np.clip(expected, 0, 1) * np.float32(255) + np.float32(0.5)))
 
+    def test_out_may_be_the_source(self):
+        picture = noise(64, 64)
+        expected = anamorph.lens(picture, lens="3de4:k1=0.2")
+        anamorph.lens(picture, lens="3de4:k1=0.2", out=picture)
+        np.testing.assert_array_equal(picture, expected)
+        inner = anamorph.Picture("lens", picture, lens="3de4:k1=0.1")
+        expected = anamorph.lens(inner, lens="3de4:k1=0.2")
+        np.testing.assert_array_equal(anamorph.lens(inner, lens="3de4:k1=0.2", out=picture[::-1]), expected)
+
+    def test_unaligned_bytes_that_are_moved(self):
+        ids = np.random.default_rng(SEED).integers(-128, 128, (24, 48, 4), np.int8)
+        expected = anamorph.pano(ids, filter="nearest", fov=90, size=(32, 16))
+        self.assertEqual(expected.dtype, np.int8)
+        for offset in range(5):
+            out = np.zeros(32 * 16 * 4 + offset, np.int8)[offset:].reshape(16, 32, 4)
+            anamorph.pano(ids, filter="nearest", fov=90, size=(32, 16), out=out)
+            np.testing.assert_array_equal(out, expected)
+            moved = np.concatenate([np.zeros(offset, np.int8), ids.ravel()])[offset:].reshape(ids.shape)
+            np.testing.assert_array_equal(anamorph.pano(moved, filter="nearest", fov=90, size=(32, 16)), expected)
+
     def test_image_bufs(self):
         panorama = noise(64, 128, 4, "float16")
         spec = oiio.ImageSpec(128, 64, 4, "half")
@@ -380,8 +411,30 @@ class BadInput(unittest.TestCase):
         for value in (object(), 3j, {1: 2}, b"bytes"):
             with self.subTest(value), self.assertRaises(TypeError):
                 anamorph.pano(noise(32, 64), fov=value)
-        with self.assertRaisesRegex(ValueError, "not JSON compliant"):
-            anamorph.warp(noise(32, 64), mesh={"columns": float("nan")})
+        for value in (float("nan"), object()):
+            with self.assertRaisesRegex(anamorph.Error, "mesh: cannot be written as JSON") as caught:
+                anamorph.warp(noise(32, 64), mesh={"columns": value})
+            self.assertEqual(caught.exception.parameter, "mesh")
+        numbers = {**SHEET, "columns": np.int64(2), "vertices": np.array(SHEET["vertices"], np.float32)}
+        np.testing.assert_array_equal(anamorph.warp(noise(48, 64), mesh=numbers), anamorph.warp(noise(48, 64), mesh=SHEET))
+        with self.assertRaisesRegex(TypeError, "points is a ndarray"):
+            anamorph.warp(noise(32, 64), points=np.zeros((3, 4)))
+        for call in (lambda: anamorph.pano(src=noise(32, 64)), lambda: anamorph.morph(noise(4, 4), b=noise(4, 4))):
+            with self.assertRaisesRegex(anamorph.Error, "must be given first"):
+                call()
+
+    def test_names_that_are_no_text(self):
+        name = os.fsdecode(b"x\xff.exr")
+        write("plain.exr", noise(32, 64))
+        os.rename("plain.exr", name)
+        self.assertEqual(anamorph.pano(name, fov=60, size=8).shape, (8, 8, 3))
+        with self.assertRaises(anamorph.Error):
+            anamorph.pano(os.fsdecode(b"y\xff.exr"))
+        with self.assertRaises(anamorph.Error):
+            anamorph.pano(noise(32, 64), fov="\udcff")
+        for call in (lambda: anamorph.pano(name + "\0z"), lambda: anamorph.pano(noise(32, 64), srclens="9\0")):
+            with self.assertRaisesRegex(anamorph.Error, "no NUL"):
+                call()
         with self.assertRaisesRegex(anamorph.Error, "mesh"):
             anamorph.warp(noise(32, 64), mesh={"columns": 1})
         with self.assertRaisesRegex(anamorph.Error, "mesh"):
@@ -398,13 +451,14 @@ class BadInput(unittest.TestCase):
             anamorph.pano()
         with self.assertRaisesRegex(anamorph.Error, "must be 1"):
             anamorph.pano(noise(4, 4), noise(4, 4))
-        with self.assertRaisesRegex(anamorph.Error, "must be one of pano"):
+        with self.assertRaisesRegex(anamorph.Error, "must be one of pano") as caught:
             anamorph.apply("panno", noise(4, 4))
+        self.assertEqual((caught.exception.parameter, anamorph.Error("x").parameter), ("operation", ""))
 
     def test_images(self):
         pixels = noise(8, 8)
         for keys, error in ((dict(channels=("R",)), anamorph.Error), (dict(corner=(1,)), ValueError), (dict(corner=(2**31, 0)), ValueError),
-                            (dict(display=(0, 0, 0, 8)), ValueError), (dict(display=(0, 0, 8)), ValueError), (dict(corner=(0.5, 0)), TypeError),
+                            (dict(display=(0, 0, 0, 8)), ValueError), (dict(display=(0, 0, 8)), ValueError), (dict(corner=(0.5, 0)), TypeError), (dict(channels=(1, 2, 3)), TypeError), (dict(metadata={1: 2}), TypeError),
                             (dict(metadata={"a": [1]}), TypeError), (dict(display=(-2**31, 0, 2**31 - 1, 8)), anamorph.Error)):
             with self.subTest(keys), self.assertRaises(error):
                 anamorph.lens(anamorph.Image(pixels, **keys), lens="3de4:k1=0.1")
@@ -412,7 +466,8 @@ class BadInput(unittest.TestCase):
     def test_calls(self):
         picture = anamorph.Picture("pano", noise(32, 64), fov=60, size=(20, 10))
         for keys, error in ((dict(roi=(0, 0, 0, 5)), ValueError), (dict(roi=(0, 0, 5)), ValueError), (dict(roi=3), ValueError),
-                            (dict(roi=(0, 0, 2**31, 1)), ValueError), (dict(roi=(0.5, 0, 2, 2)), TypeError), (dict(out=[[0]]), TypeError),
+                            (dict(roi=(0, 0, 2**31, 1)), ValueError), (dict(roi=(2**31 - 2, 0, 2**31 - 1, 1)), anamorph.Error),
+                            (dict(roi=(0, -2**31, 1, 1 - 2**31)), anamorph.Error), (dict(roi=(0.5, 0, 2, 2)), TypeError), (dict(out=[[0]]), TypeError),
                             (dict(out=np.empty((20, 10, 3), "f4")), ValueError), (dict(out=np.empty((10, 20, 3), complex)), TypeError),
                             (dict(progress=3), TypeError)):
             with self.subTest(keys), self.assertRaises(error):
@@ -423,6 +478,8 @@ class BadInput(unittest.TestCase):
             picture.draw(out=fixed)
         with self.assertRaises(TypeError):
             anamorph.pano(noise(32, 64), threads=1.5)
+        with self.assertRaisesRegex(ValueError, "at least 0"):
+            anamorph.pano(noise(32, 64), threads=-1)
         self.assertEqual(picture.draw().shape, (10, 20, 3))
 
 

@@ -47,6 +47,9 @@ class Image:
     def __init__(self, pixels, *, channels=(), unassociated=False, corner=(0, 0), display=None, metadata=None):
         self.pixels = _pixels(pixels, "pixels")
         self.channels = tuple(channels)
+        for channel in self.channels:
+            if not isinstance(channel, str):
+                raise TypeError(f"channels: {channel!r} must be a str")
         self.unassociated = bool(unassociated)
         self.corner = _integers("corner", corner, 2)
         self.display = (0, 0, 0, 0) if display is None else _integers("display", display, 4)
@@ -54,6 +57,8 @@ class Image:
             raise ValueError(f"display={display}: must be (x0, y0, x1, y1) with x0 < x1 and y0 < y1")
         self.metadata = dict(metadata or {})
         for name, value in self.metadata.items():
+            if not isinstance(name, str):
+                raise TypeError(f"metadata: the name {name!r} must be a str")
             if not isinstance(value, (int, float, str)):
                 raise TypeError(f"metadata[{name!r}] is a {type(value).__name__}: must be an int, a float or a str")
 
@@ -73,14 +78,18 @@ class Picture:
 
     def __init__(self, operation, *sources, subimage=0, threads=0, **keys):
         if operation not in _OPERATIONS:
-            raise Error(f"operation={operation}: must be one of {', '.join(operations)}")
+            raise _error("operation", f"operation={operation}: must be one of {', '.join(operations)}")
+        keys = {_key_of(name): value for name, value in keys.items() if value is not None}
+        _check_sources_are_no_keys(_OPERATIONS[operation], keys)
         table = {key["name"]: key for key in _OPERATIONS[operation]["keys"]}
         texts, images = {}, {}
-        values = [(_key_of(name), _text_of(table.get(_key_of(name)), _key_of(name), value, texts, images))
-                  for name, value in keys.items() if value is not None]
+        values = [(_encoded(name), _encoded(_text_of(table.get(name), name, value, texts, images), name))
+                  for name, value in keys.items()]
         opened = [source._core if isinstance(source, Picture) else _source_of(source) for source in sources]
-        self._threads = _integer("threads", threads)
-        self._core = _core.Picture(operation, values, opened, texts, images, _integer("subimage", subimage), self._threads)
+        self._threads = _integer("threads", threads or 0)
+        if self._threads < 0:
+            raise ValueError(f"threads={threads}: must be at least 0")
+        self._core = _core.Picture(operation, values, opened, texts, images, _integer("subimage", subimage or 0), self._threads)
         self._flat = _is_flat(sources[0]) if sources else True
         self.operation = operation
 
@@ -149,7 +158,8 @@ class Picture:
             if out.dtype.name not in _core.dtypes or not out.dtype.isnative:
                 raise TypeError(f"out has the dtype {out.dtype}: must be one of {', '.join(_core.dtypes)}")
         drawn = pixels if pixels.ndim == 3 else pixels[:, :, None]
-        plain = _is_plain(drawn)
+        # Sources are read while pixels are written.
+        plain = _is_plain(drawn) and not any(_numpy.may_share_memory(drawn, array) for array in self._core.arrays)
         to = drawn if plain else _numpy.empty(drawn.shape, drawn.dtype)
         self._core.draw(to, x0, y0, self._threads, progress)
         if not plain:
@@ -196,10 +206,43 @@ def _key_of(name):
     return name[:-1] if name.endswith("_") and _keyword.iskeyword(name[:-1]) else name
 
 
+def _error(parameter, message):
+    error = Error(message)
+    error.parameter = parameter
+    return error
+
+
+def _check_sources_are_no_keys(operation, keys):
+    for name in operation["sources"]:
+        names_images = name == operation["main_file"] and isinstance(keys.get(name), (str, _os.PathLike))
+        if name in keys and not names_images:
+            raise _error(name, f"{name}: sources are no keys: must be given first, in the order {', '.join(operation['sources'])}")
+
+
+def _encoded(text, name="a key"):
+    """Bytes, since names of files may be any."""
+    if "\0" in text:
+        raise _error(name, f"{name}: must have no NUL character")
+    return text.encode("utf-8", "surrogateescape")
+
+
+def _plain_json(value):
+    if isinstance(value, (_numpy.ndarray, _numpy.generic)):
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} has no place in JSON")
+
+
+def _json_of(key, value):
+    try:
+        return _json.dumps(value, allow_nan=False, default=_plain_json)
+    except (TypeError, ValueError) as error:
+        raise _error(key, f"{key}: cannot be written as JSON: {error}") from None
+
+
 def _integer(name, value):
     try:
         number = value.__index__()
-    except AttributeError:
+    except (AttributeError, TypeError):
         raise TypeError(f"{name}={value!r}: must be an integer") from None
     if not -2**31 <= number < 2**31:
         raise ValueError(f"{name}={number}: must be an integer of 32 bits")
@@ -237,12 +280,14 @@ def _text_of(row, key, value, texts, images):
         return _os.fspath(value)
     if kind in ("image", "file") and isinstance(value, (dict, list)):
         name = f"<{key}>.json"
-        texts[name] = _json.dumps(value, allow_nan=False)
+        texts[name] = _json_of(key, value)
         return name
     if kind == "image" and not isinstance(value, _numbers.Number):
         name = f"<{key}>"
         images[name] = _source_of(value, key)
         return name
+    if kind == "file":
+        raise TypeError(f"{key} is a {type(value).__name__}: must be the name of a file, or the dict or list that a JSON file holds")
     if isinstance(value, (tuple, list, _numpy.ndarray)):
         separator = "x" if kind == "extent" else ","
         return separator.join(_number_text(key, part) for part in _numpy.ravel(value).tolist())
@@ -266,6 +311,8 @@ def _pixels(pixels, name):
 def _is_plain(array):
     """Do the channels of a pixel stand next to each other, and pixels and rows behind each other, aligned?"""
     rows, columns, channels = array.strides
+    if array.dtype.name not in ("uint8", "uint16", "float16", "float32") and (rows | columns | array.ctypes.data) % 4:
+        return False  # pixels that are only moved are moved four bytes at a time where that fits
     return (channels == array.itemsize and columns >= array.shape[2] * array.itemsize and rows >= 0
             and array.flags.aligned and (rows >= columns * array.shape[1] or array.shape[0] == 1))
 
@@ -288,7 +335,7 @@ def _is_flat(source):
 
 def _source_of(source, name="a source"):
     if isinstance(source, (str, _os.PathLike)):
-        return _core.file_source(_os.fspath(source))
+        return _core.file_source(_encoded(_os.fsdecode(source), name))
     if _is_imagebuf(source):
         source = _read_imagebuf(source)
     if not isinstance(source, Image):
@@ -296,8 +343,9 @@ def _source_of(source, name="a source"):
     array = source.pixels if source.pixels.ndim == 3 else source.pixels[:, :, None]
     if not _is_plain(array):
         array = _numpy.ascontiguousarray(array)
-    return _core.array_source(array, list(source.channels), source.unassociated, source.corner, source.display,
-                              list(source.metadata.items()))
+    return _core.array_source(array, [_encoded(channel, "channels") for channel in source.channels], source.unassociated, source.corner, source.display,
+                              [(_encoded(name, "metadata"), _encoded(value, name) if isinstance(value, str) else value)
+                               for name, value in source.metadata.items()])
 
 
 def _read_imagebuf(image):
