@@ -68,10 +68,11 @@ for kind in ("Sphere", "Plane", "Wavelet", "Slice"):
 print("every one")
 '''
 
-# Filters of figures want the array Axes, those of pictures an image, and a texture is baked for a mesh with texture coordinates.
+# Filters of figures want the array Axes, those of pictures an image, and textures are baked or laid on a mesh with texture coordinates.
 GREYED = {name: "Sphere,Plane,Wavelet,Slice" for name in ("AnamorphFigureGeometry", "AnamorphFigureOutline", "AnamorphFigureSkeleton", "AnamorphFigureImage")}
 GREYED.update({name: "Sphere,Plane,Wavelet" for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView")})
-GREYED.update({"AnamorphDeformImage": "Sphere,Plane", "AnamorphProjectionBake": "Sphere,Wavelet,Slice"})
+GREYED.update({"AnamorphDeformImage": "Sphere,Plane", "AnamorphProjectionBake": "Sphere,Wavelet,Slice",
+               "AnamorphNonlinearTexture": "Sphere,Wavelet,Slice"})
 folders = [os.environ[place] + "/plugins/paraview/anamorph/*.xml" for place in ("ANAMORPH_SOURCE_DIR", "ANAMORPH_BUILD_DIR")]
 filters = [element.get("name") for path in sorted(p for f in folders for p in glob.glob(f)) for group in xml.parse(path).getroot().iter("ProxyGroup")
            if group.get("name") == "filters" for element in group if element.tag.endswith("Proxy")]

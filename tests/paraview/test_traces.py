@@ -334,5 +334,5 @@ for session in SESSIONS:
 proxies = {element.get("name") for place in ("ANAMORPH_SOURCE_DIR", "ANAMORPH_BUILD_DIR")
            for path in glob.glob(os.environ[place] + "/plugins/paraview/anamorph/*.xml")
            for group in xml.parse(path).getroot().iter("ProxyGroup") for element in group
-           if element.tag.endswith("Proxy") and group.get("name") != "representations"}
+           if element.tag.endswith("Proxy") and group.get("name") not in ("representations", "writers")}
 assert proxies <= traced, proxies - traced
