@@ -24,7 +24,7 @@ oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
 oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 "$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 72 ]
+[ "$(wc -l <one_liners.sh)" -eq 88 ]
 if ! command -v ffmpeg >/dev/null; then
     sed -i '/^ffmpeg /d' one_liners.sh
 fi

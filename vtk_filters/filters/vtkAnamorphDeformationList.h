@@ -140,7 +140,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
     struct Numbers : std::array<double, 18> {
         using Array = std::array<double, 18>;
         std::string Name;
-        bool operator==(const Numbers&) const = default;
+        bool operator==(const Numbers& other) const {
+            return static_cast<const Array&>(*this) == other && this->Name == other.Name;
+        }
     };
     const std::vector<Numbers>& GetAll() const {
         return this->List;
