@@ -6,11 +6,12 @@
 #include <iterator>
 #include <variant>
 
-#include "anamorph/chain/joined.h"
 #include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
+#include "anamorph/joining.h"
 #include "anamorph/lens_database.h"
 #include "anamorph/metadata.h"
+#include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parameter/parameter.h"
@@ -126,13 +127,10 @@ void check_count(const Operation& operation, std::size_t sources) {
                 (least < most ? " to " + std::to_string(most) : ""));
 }
 
-/// Keys that only a file has a use for.
-const char* const kKeysOfRecipes[] = {"subimage", "tile", "mip", "hash", "frames"};
-
 /// Refuses keys that only a recipe has a use for, the sources' names among them.
 void check_keys(const Operation& operation, const ParameterValues& values, bool reads_pictures) {
     std::vector<std::string> of_recipes = operation.sources;
-    of_recipes.insert(of_recipes.end(), std::begin(kKeysOfRecipes), std::end(kKeysOfRecipes));
+    of_recipes.insert(of_recipes.end(), std::begin(rows::kKeysOfRecipes), std::end(rows::kKeysOfRecipes));
     if (!reads_pictures) of_recipes.emplace_back("concatenate");
     for (const std::string& name : of_recipes)
         if (values.given(name) && !(name == operation.main_file && operation.gathers(values.text(name))))
@@ -219,13 +217,11 @@ const ImageBuf& BufferPicture::drawn(const BufferPicture& inner, const ParallelF
 }
 
 std::string BufferPicture::join(const BufferPicture& inner) {
-    if (m_values.knows("concatenate") && !m_values.toggle("concatenate")) return "concatenate=0";
-    if (m_pictures->frames() > 1) return "it is a film";
-    if (m_sources.size() > 1 || !of_maps()) return "it is no picture of maps of one source";
-    if (!inner.of_maps()) return "its source is no picture of maps";
-    if (m_request.pixels == PixelKind::color && (inner.m_space != m_space || inner.m_stored != m_stored))
-        return "colors are kept differently";
-    const Joined joined = joined_picture(*of_maps(), *inner.of_maps(), inner.m_request.shown());
+    if (std::string reason = why_drawn_apart(m_chain, m_values, m_pictures->frames()); !reason.empty())
+        return reason;
+    const Joined joined =
+        joined_sides({*m_picture, m_request.shown(), m_space, m_stored}, m_request.pixels,
+                     {*inner.m_picture, inner.m_request.shown(), inner.m_space, inner.m_stored});
     if (!joined.picture) return joined.reason;
     m_picture = solved(*joined.picture);
     m_stacks = inner.m_stacks;

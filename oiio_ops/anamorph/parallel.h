@@ -16,7 +16,7 @@ namespace anamorph {
 ParallelFor parallel_for_on(OIIO::thread_pool& pool, int threads);
 
 /// A loop on up to `threads` threads of OpenImageIO's default pool, the caller's among them; 0 for all of them.
-ParallelFor default_parallel_for(int threads);
+ParallelFor default_parallel_for(int threads = 0);
 
 /// While one lives, its thread counts as a worker of OpenImageIO's own pool, so that files it reads are
 /// decoded on this thread alone. Otherwise it would wait for that pool and run the host's tasks meanwhile,

@@ -40,6 +40,8 @@ class OiioImage final : public SideImage {
         if (spec.deep || spec.depth > 1) throw Error(m_what + " is deep or a volume: must be a flat image");
         check_windows(spec, m_what);
         m_has_more_parts = m_input->seek_subimage(1, 0);
+        if (!m_has_more_parts)
+            static_cast<void>(m_input->geterror());  // that there is no such part is no error
         m_input->seek_subimage(0, 0);
     }
 
@@ -101,6 +103,31 @@ class FilesOfParts {
     std::set<std::string> m_identities;
 };
 
+/// An image in memory, as its numbers are stored.
+class MemoryImage final : public SideImage {
+  public:
+    explicit MemoryImage(const OIIO::ImageBuf& image) : m_image(image) {}
+    Size size() const override { return {m_image.spec().width, m_image.spec().height}; }
+    Box display() const override {
+        const OIIO::ImageSpec& spec = m_image.spec();
+        const int x = spec.full_x - spec.x, y = spec.full_y - spec.y;
+        return {x, y, x + spec.full_width, y + spec.full_height};
+    }
+    int channels() const override { return m_image.nchannels(); }
+    int alpha() const override { return m_image.spec().alpha_channel; }
+    std::vector<float> read(int count) override {
+        std::vector<float> pixels(static_cast<std::size_t>(size().width) *
+                                  static_cast<std::size_t>(size().height) * static_cast<std::size_t>(count));
+        OIIO::ROI roi = m_image.roi();
+        roi.chend = count;
+        if (!m_image.get_pixels(roi, OIIO::TypeFloat, pixels.data())) throw Error(m_image.geterror());
+        return pixels;
+    }
+
+  private:
+    const OIIO::ImageBuf& m_image;
+};
+
 class FileReader final : public SideFileReader {
   public:
     std::string text(const std::string& name) const override {
@@ -135,6 +162,21 @@ class FileReader final : public SideFileReader {
 const SideFileReader& side_file_reader() {
     static const FileReader reader;
     return reader;
+}
+
+std::string MemoryFileReader::text(const std::string& name) const {
+    const auto found = m_files.texts.find(name);
+    return found != m_files.texts.end() ? found->second : side_file_reader().text(name);
+}
+
+bool MemoryFileReader::exists(const std::string& name) const {
+    return m_files.texts.count(name) > 0 || side_file_reader().exists(name);
+}
+
+std::unique_ptr<SideImage> MemoryFileReader::image(const std::string& key, const std::string& name) const {
+    const auto found = m_files.images.find(name);
+    if (found != m_files.images.end()) return std::make_unique<MemoryImage>(*found->second);
+    return side_file_reader().image(key, name);
 }
 
 namespace {

@@ -13,6 +13,7 @@
 #include "anamorph/face_source.h"
 #include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
+#include "anamorph/joining.h"
 #include "anamorph/lens_database.h"
 #include "anamorph/metadata.h"
 #include "anamorph/operation/memo.h"
@@ -371,18 +372,17 @@ class RecipeContent final : public Content {
     /// Joins it, or returns the reason why not.
     std::string why_not_joined(const ParameterValues& values, const std::vector<OpenSource>& images,
                                PixelKind pixels) {
-        if (!values.knows("concatenate")) return m_chain + " does not join";
-        if (!values.toggle("concatenate")) return "concatenate=0";
+        if (const std::string reason = why_drawn_apart(m_chain, values, subimages()); !reason.empty())
+            return reason;
         if (!images[0].content) return "its source is no recipe";
-        if (subimages() > 1) return "it is a film";
         std::optional<JoinSource> source = images[0].content->join_source(images[0].part);
-        if (!source || !source->picture->of_maps()) return "its source is no picture of maps";
-        if (pixels == PixelKind::color && (source->space != m_space || source->stored != m_stored))
-            return "colors are kept differently";
+        if (!source) return "its source is no picture of maps";
         for (int i = 0; i < m_levels; ++i) {
-            const std::unique_ptr<const SolvedPicture> own = m_pictures->picture(0, i)->solve();
-            if (!own->of_maps()) return "it is no picture of maps";
-            const Joined joined = joined_picture(*own->of_maps(), *source->picture->of_maps(), source->shown);
+            const PictureRequest request = *m_pictures->picture(0, i);
+            const std::unique_ptr<const SolvedPicture> own = request.solve();
+            const Joined joined =
+                joined_sides({*own, request.shown(), m_space, m_stored}, pixels,
+                             {*source->picture, source->shown, source->space, source->stored});
             if (!joined.picture) return joined.reason;
         }
         m_joined = std::move(source);

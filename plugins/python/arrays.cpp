@@ -53,51 +53,6 @@ ImageSpec spec_of(const ArrayPixels& pixels, const ArrayFacts& facts) {
     return spec;
 }
 
-/// An image in memory, as its numbers are stored.
-class MemoryImage final : public SideImage {
-  public:
-    explicit MemoryImage(const ImageBuf& image) : m_image(image) {}
-    Size size() const override { return {m_image.spec().width, m_image.spec().height}; }
-    Box display() const override {
-        const ImageSpec& spec = m_image.spec();
-        const int x = spec.full_x - spec.x, y = spec.full_y - spec.y;
-        return {x, y, x + spec.full_width, y + spec.full_height};
-    }
-    int channels() const override { return m_image.nchannels(); }
-    int alpha() const override { return m_image.spec().alpha_channel; }
-    std::vector<float> read(int count) override {
-        std::vector<float> pixels(static_cast<std::size_t>(size().width) *
-                                  static_cast<std::size_t>(size().height) * static_cast<std::size_t>(count));
-        ROI roi = m_image.roi();
-        roi.chend = count;
-        if (!m_image.get_pixels(roi, OIIO::TypeFloat, pixels.data())) throw Error(m_image.geterror());
-        return pixels;
-    }
-
-  private:
-    const ImageBuf& m_image;
-};
-
-class MemoryReader final : public SideFileReader {
-  public:
-    explicit MemoryReader(const MemoryFiles& files) : m_files(files) {}
-    std::string text(const std::string& name) const override {
-        const auto found = m_files.texts.find(name);
-        return found != m_files.texts.end() ? found->second : side_file_reader().text(name);
-    }
-    bool exists(const std::string& name) const override {
-        return m_files.texts.contains(name) || side_file_reader().exists(name);
-    }
-    std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const override {
-        const auto found = m_files.images.find(name);
-        if (found != m_files.images.end()) return std::make_unique<MemoryImage>(found->second->image());
-        return side_file_reader().image(key, name);
-    }
-
-  private:
-    const MemoryFiles& m_files;
-};
-
 const Operation& operation_of(const std::string& name) {
     if (const Operation* operation = find_operation(name)) return *operation;
     throw Error("operation", printable(name), "must be one of " + operation_names());
@@ -111,9 +66,9 @@ ArraySource::ArraySource(const ArrayPixels& pixels, const ArrayFacts& facts)
 ArraySource::ArraySource(const std::string& file) : m_image(file) {}
 
 ArrayPicture::ArrayPicture(const std::string& operation, const std::vector<Assignment>& assignments,
-                           const std::vector<Input>& sources, MemoryFiles files, int subimage,
+                           const std::vector<Input>& sources, const ArrayFiles& files, int subimage,
                            const ParallelFor& parallel_for)
-    : m_operation(operation), m_sources(sources), m_files(std::move(files)) {
+    : m_operation(operation), m_sources(sources), m_files(files) {
     const Operation& known = operation_of(operation);
     ParameterValues values(*known.parameters);
     values.assign(assignments);
@@ -121,8 +76,10 @@ ArrayPicture::ArrayPicture(const std::string& operation, const std::vector<Assig
     for (const Input& source : sources)
         inputs.push_back({source.array ? &source.array->image() : nullptr,
                           source.picture ? source.picture->m_picture : nullptr});
+    MemoryFiles in_memory{files.texts, {}};
+    for (const auto& [name, image] : files.images) in_memory.images[name] = &image->image();
     m_picture = std::make_shared<const BufferPicture>(known, values, inputs, parallel_for,
-                                                      MemoryReader(m_files), subimage);
+                                                      MemoryFileReader(in_memory), subimage);
 }
 
 void ArrayPicture::draw(const ArrayPixels& to, int x, int y, const ParallelFor& parallel_for,

@@ -47,8 +47,8 @@ class ArraySource {
     OIIO::ImageBuf m_image;
 };
 
-/// Side files that are not files: texts and images by the names that values give them.
-struct MemoryFiles {
+/// Side files that are not files: texts and arrays by the names that values give them.
+struct ArrayFiles {
     std::map<std::string, std::string> texts;
     std::map<std::string, std::shared_ptr<const ArraySource>> images;
 };
@@ -68,7 +68,7 @@ class ArrayPicture {
     };
     /// Opens a picture of the operation of a name. Throws Error.
     ArrayPicture(const std::string& operation, const std::vector<Assignment>& values,
-                 const std::vector<Input>& sources, MemoryFiles files, int subimage,
+                 const std::vector<Input>& sources, const ArrayFiles& files, int subimage,
                  const ParallelFor& parallel_for);
 
     const OIIO::ImageSpec& spec() const { return m_picture->spec(); }
@@ -99,7 +99,7 @@ class ArrayPicture {
 
     std::string m_operation;
     std::vector<Input> m_sources;
-    MemoryFiles m_files;
+    ArrayFiles m_files;
     std::shared_ptr<const BufferPicture> m_picture;
 };
 

@@ -6,9 +6,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "anamorph/operation/rows.h"
 #include "anamorph/parallel.h"
 #include "anamorph/version.h"
 #include "arrays.h"
@@ -133,12 +136,11 @@ class ModulePicture {
                 inputs.push_back({keep(*std::get<const ModuleSource*>(source)), nullptr});
             }
         }
-        MemoryFiles files{texts, {}};
+        ArrayFiles files{texts, {}};
         for (const auto& [name, image] : images) files.images[name] = keep(*image);
         const py::gil_scoped_release unlock;
-        m_picture =
-            std::make_shared<const ArrayPicture>(operation, assignments, inputs, std::move(files), subimage,
-                                                 interruptible(default_parallel_for(threads)));
+        m_picture = std::make_shared<const ArrayPicture>(operation, assignments, inputs, files, subimage,
+                                                         interruptible(default_parallel_for(threads)));
     }
 
     const OIIO::ImageSpec& spec() const { return m_picture->spec(); }
@@ -247,6 +249,8 @@ py::dict dict_of(const Operation& operation) {
         key["accepted"] = p.accepted();
         key["documentation"] = p.documentation;
         key["definitions"] = p.definitions;
+        key["of_recipes"] = std::find(std::begin(rows::kKeysOfRecipes), std::end(rows::kKeysOfRecipes),
+                                      p.name) != std::end(rows::kKeysOfRecipes);
         keys.append(key);
     }
     py::dict dict;

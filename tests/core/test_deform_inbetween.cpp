@@ -203,6 +203,27 @@ std::vector<std::vector<double>> random_frames(unsigned seed, std::size_t number
     return frames;
 }
 
+TEST(KeyFrames, AreMadeOfKeysInAnyOrder) {
+    const ShapeFrames frames = frames_of_keys({{2, 1, 0.5}, {-1, 0, 3}, {2, 2, -4}}, 3, "Shape", "a shape");
+    EXPECT_EQ(frames.times, (std::vector<double>{-1, 2}));
+    EXPECT_EQ(frames.weights, (std::vector<std::vector<double>>{{3, 0, 0}, {0, 0.5, -4}}));
+    const auto error_of = [](const std::vector<ShapeKey>& keys) -> std::string {
+        try {
+            frames_of_keys(keys, 3, "Shape", "a shape");
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(error_of({{0, 2, 1}, {0, 3, 1}}), "Keys[1].Shape=3: must be a shape from 0 to 2");
+    EXPECT_EQ(error_of({{0, 0.5, 1}}), "Keys[0].Shape=0.5: must be a shape from 0 to 2");
+    EXPECT_EQ(error_of({{0, -1, 1}}), "Keys[0].Shape=-1: must be a shape from 0 to 2");
+    EXPECT_EQ(error_of({{0, NAN, 1}}), "Keys[0].Shape=nan: must be a shape from 0 to 2");
+    EXPECT_EQ(error_of({{NAN, 0, 1}}), "Keys[0].Time=nan: must be a finite number");
+    EXPECT_EQ(error_of({{4, 1, 1}, {5, 1, 1}, {4, 1, 2}}),
+              "Keys[2].Time=4: shape 1 has a key at this time already");
+}
+
 TEST(KeyFrames, MeetTheFramesAndStandStillOutside) {
     const auto frames = random_frames(1, 3);
     for (const KeyInterpolation interpolation : kAll) {

@@ -198,8 +198,11 @@ for files, words in cases:
 
 def damaged(change):
     top, data = document("LINEAR")
+    path = write("damaged.gltf", top, data)
     change(top)
-    return write("damaged.gltf", top, data)
+    with open(path, "w") as file:
+        json.dump(top, file)
+    return path
 
 
 # What leads out of a document, on which VTK's loader crashes.
@@ -211,7 +214,14 @@ for change in (lambda top: top.update(meshes={"a": 1}), lambda top: top["nodes"]
                lambda top: top["meshes"][0]["primitives"][0].update(targets=[3]), lambda top: top.update(scene=4),
                lambda top: top["animations"][0]["channels"][0].update(sampler=5),
                lambda top: top["animations"][0]["samplers"][0].update(input=77),
-               lambda top: top["animations"][0]["channels"][0]["target"].update(node=5)):
+               lambda top: top["animations"][0]["channels"][0]["target"].update(node=5),
+               # Buffers that are not there, or not whole.
+               lambda top: top["buffers"][0].update(uri="none.bin"), lambda top: top["buffers"][0].update(uri="."),
+               lambda top: top["buffers"][0].update(uri=7), lambda top: top["buffers"][0].pop("uri"), lambda top: top["buffers"][0].update(uri=""),
+               lambda top: top["buffers"][0].update(uri="data:application/octet-stream;base64,AAAA"),
+               lambda top: top["buffers"][0].update(uri="data:"), lambda top: top["buffers"][0].update(uri="data:text/plain," + "A" * 10000),
+               lambda top: top["buffers"][0].update(uri="data:application/octet-stream;base64," + "!" * 10000),
+               lambda top: top.update(buffers=[])):
     told = []
     reader = reader_of(damaged(change))
     reader.AddObserver("ErrorEvent", lambda *_: told.append(1))

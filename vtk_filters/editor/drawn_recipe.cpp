@@ -24,33 +24,9 @@ using anamorph::printable;
 
 namespace {
 
-anamorph::ParallelFor threads() {
-    OIIO::thread_pool& pool = *OIIO::default_thread_pool();
-    return anamorph::parallel_for_on(pool, pool.size() + 1);
-}
-
 /// The image as it stands, by a mesh of one cell.
 constexpr const char* kUnmoved =
     R"({"columns": 1, "rows": 1, "units": "fractions", "vertices": [[0, 0], [1, 0], [0, 1], [1, 1]]})";
-
-/// Hands over the text that is edited in place of its file, and reads all others.
-class EditedReader final : public anamorph::SideFileReader {
-  public:
-    EditedReader(const std::string& name, const std::string& text) : m_name(name), m_text(text) {}
-    std::string text(const std::string& name) const override {
-        return name == m_name ? m_text : anamorph::side_file_reader().text(name);
-    }
-    bool exists(const std::string& name) const override {
-        return name == m_name || anamorph::side_file_reader().exists(name);
-    }
-    std::unique_ptr<anamorph::SideImage> image(const std::string& key,
-                                               const std::string& name) const override {
-        return anamorph::side_file_reader().image(key, name);
-    }
-
-  private:
-    const std::string &m_name, &m_text;
-};
 
 /// The name by which the operation is told of the text: whatever the file's format, it is JSON.
 std::string json_name(const std::string& file) {
@@ -77,7 +53,7 @@ void convert_row(const Value* from, int channels, int width, unsigned char* to, 
 
 double ReadyPicture::max_error() const {
     const anamorph::Picture* picture = m_solved->of_maps();
-    return picture ? picture->reached(threads()).max_error : NAN;
+    return picture ? picture->reached(anamorph::default_parallel_for()).max_error : NAN;
 }
 
 DrawnRecipe::DrawnRecipe(const std::string& name, const std::string& edited)
@@ -133,7 +109,9 @@ ReadyPicture DrawnRecipe::ready(const std::string& text, const anamorph::Size& s
     if (size.width > 0) values.set("size", size);
     const std::string& given = text.empty() ? kUnmoved : text;
     const std::string& name = m_files.at(m_edited).name;
-    const EditedReader reader(name, given);
+    // The text that is edited stands for its file.
+    const anamorph::MemoryFiles edited{{{name, given}}};
+    const anamorph::MemoryFileReader reader(edited);
     const auto pictures = m_operation->read({values, m_known, m_files, reader});
     ReadyPicture ready;
     ready.m_request = *pictures->picture(0, 0);
@@ -154,9 +132,9 @@ void DrawnRecipe::draw(const ReadyPicture& picture, const Box& box, ScreenPixels
     std::vector<std::byte> pixels(row * static_cast<std::size_t>(box.height()));
     anamorph::draw_picture(*picture.m_solved, m_stacks, box,
                            anamorph::packed_view(pixels.data(), type, box.width(), box.height(), channels),
-                           threads());
+                           anamorph::default_parallel_for());
     const bool hdr = colors && (m_type == PixelType::half || m_type == PixelType::float32);
-    threads()(box.height(), [&](std::int64_t row_number) {
+    anamorph::default_parallel_for()(box.height(), [&](std::int64_t row_number) {
         const int y = static_cast<int>(row_number);
         const std::byte* from = pixels.data() + row * static_cast<std::size_t>(y);
         unsigned char* const rgb = to.at(box.x0, box.y0 + y);

@@ -97,6 +97,7 @@ class Document {
         });
         each(m_top, "scenes", [&](const Json& scene) { indices(scene, "nodes", "nodes"); });
         index(m_top, "scene", "scenes");
+        each(m_top, "buffers", [&](const Json& buffer) { check_buffer(buffer); });
         each(m_top, "bufferViews", [&](const Json& view) {
             index(view, "buffer", "buffers");
             const double end = number(view, "byteOffset") + number(view, "byteLength");
@@ -165,6 +166,36 @@ class Document {
     void attributes_of(const Json& object) const {
         if (!object.is_object()) fail("attributes: must be an object");
         for (const auto& [name, at] : object.members()) index(object, name, "accessors");
+    }
+    /// A buffer that is not in the document itself must be there, whole; VTK takes its name as it is written, and decodes no %20.
+    void check_buffer(const Json& buffer) const {
+        const double wanted = number(buffer, "byteLength");
+        if (!buffer.contains("uri")) {
+            if (ending_of(m_path) == ".gltf" && wanted > 0) fail("buffers: one has no uri");
+            return;
+        }
+        if (!buffer.member("uri").is_string()) fail("buffers: uri: must be a text");
+        const std::string uri = buffer.member("uri").string();
+        double size = 0;
+        if (uri.starts_with("data:")) {
+            // Four digits of base64 are three bytes.
+            constexpr const char* kDigits =
+                "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+            const std::string kind = ";base64,";
+            const std::size_t at = uri.find(kind);
+            if (at == std::string::npos) fail("buffers: uri: data must be in base64");
+            const std::size_t from = at + kind.size(),
+                              end = std::min(uri.find_first_not_of(kDigits, from), uri.size());
+            size = std::floor(static_cast<double>(end - from) * 3 / 4);
+        } else {
+            const std::filesystem::path file = std::filesystem::path(m_path).parent_path() / uri;
+            std::error_code failure;
+            const std::uintmax_t bytes = std::filesystem::file_size(file, failure);
+            if (failure)
+                fail("buffers: there is no file " + anamorph::text_file::excerpt(uri) + " beside it");
+            size = static_cast<double>(bytes);
+        }
+        if (size < wanted) fail("buffers: one is cut off");
     }
     void check_accessor(const Json& accessor) const {
         if (!accessor.contains("bufferView")) return;

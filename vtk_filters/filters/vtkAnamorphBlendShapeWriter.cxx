@@ -8,7 +8,6 @@
 #include <fstream>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "anamorph/deform/shapes_file.h"
 #include "anamorph/error.h"
@@ -224,34 +223,15 @@ std::string ending_of(const std::filesystem::path& path) {
     return ending;
 }
 
+/// Keys as frames of the shapes beside the base, of which there are `count`. The base has no weight of its own.
 template <class Keys>
-anamorph::KeyFrames frames_of(const Keys& keys, std::size_t shapes,
-                              anamorph::KeyInterpolation interpolation) {
-    std::map<double, std::vector<double>> frames;
-    std::set<std::pair<double, double>> seen;
-    std::size_t row = 0;
-    for (const auto& key : keys) {
-        const std::string at = "Keys[" + std::to_string(row++) + "]";
-        if (!std::isfinite(key.Time))
-            throw Error(at + ".Time", anamorph::shortest(key.Time), "must be a finite number");
-        if (!(key.Shape >= 0 && key.Shape <= static_cast<double>(shapes)) ||
-            key.Shape != std::floor(key.Shape))
-            throw Error(at + ".Shape", anamorph::shortest(key.Shape),
-                        "must be a shape from 0, the base, to " + std::to_string(shapes));
-        if (!seen.emplace(key.Time, key.Shape).second)
-            throw Error(at + ".Time", anamorph::shortest(key.Time),
-                        "the shape has a key at this time already");
-        std::vector<double>& weights = frames[key.Time];
-        weights.resize(shapes);
-        if (key.Shape > 0) weights[static_cast<std::size_t>(key.Shape) - 1] = key.Weight;
-    }
-    std::vector<double> times;
-    std::vector<std::vector<double>> values;
-    for (const auto& [time, weights] : frames) {
-        times.push_back(time);
-        values.push_back(weights);
-    }
-    return {times, values, interpolation};
+anamorph::KeyFrames frames_of(const Keys& keys, std::size_t count, anamorph::KeyInterpolation interpolation) {
+    std::vector<anamorph::ShapeKey> rows;
+    for (const auto& key : keys) rows.push_back({key.Time, key.Shape, key.Weight});
+    anamorph::ShapeFrames frames =
+        anamorph::frames_of_keys(rows, static_cast<int>(count) + 1, "Shape", "a shape");
+    for (std::vector<double>& weights : frames.weights) weights.erase(weights.begin());
+    return {frames.times, frames.weights, interpolation};
 }
 
 }  // namespace

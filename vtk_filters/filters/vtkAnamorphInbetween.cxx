@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -604,30 +603,14 @@ std::vector<double> vtkAnamorphInbetween::WeightsAt(int inputs, double time) con
 }
 
 std::vector<double> vtkAnamorphInbetween::WeightsOfKeysAt(int inputs, double time) const {
-    std::map<double, std::vector<double>> frames;
-    std::set<std::pair<double, int>> seen;
-    for (std::size_t i = 0; i < this->Keys.size(); ++i) {
-        const Key& key = this->Keys[i];
-        if (!std::isfinite(key.Time))
-            throw Error(entry("Keys", i) + ".Time", anamorph::shortest(key.Time), "must be a finite number");
-        if (key.Input < 0 || key.Input >= inputs)
-            throw Error(entry("Keys", i) + ".Input", std::to_string(key.Input),
-                        "must be an input from 0 to " + std::to_string(inputs - 1));
-        if (!seen.emplace(key.Time, key.Input).second)
-            throw Error(entry("Keys", i) + ".Time", anamorph::shortest(key.Time),
-                        "input " + std::to_string(key.Input) + " has a key at this time already");
-        std::vector<double>& weights = frames[key.Time];
-        weights.resize(static_cast<std::size_t>(inputs));
-        weights[static_cast<std::size_t>(key.Input)] = key.Weight;
-    }
-    std::vector<double> times;
-    std::vector<std::vector<double>> values;
-    for (const auto& [frame_time, weights] : frames) {
-        times.push_back(frame_time);
+    std::vector<anamorph::ShapeKey> keys;
+    for (const Key& key : this->Keys) keys.push_back({key.Time, static_cast<double>(key.Input), key.Weight});
+    anamorph::ShapeFrames frames = anamorph::frames_of_keys(keys, inputs, "Input", "an input");
+    for (std::size_t k = 0; k < frames.times.size(); ++k) {
         try {
-            values.push_back(this->CheckedSum(weights));
+            frames.weights[k] = this->CheckedSum(frames.weights[k]);
         } catch (const Error& error) {
-            throw Error("Keys at time " + anamorph::shortest(frame_time) + ": " + error.what());
+            throw Error("Keys at time " + anamorph::shortest(frames.times[k]) + ": " + error.what());
         }
     }
     using anamorph::KeyInterpolation;
@@ -636,7 +619,8 @@ std::vector<double> vtkAnamorphInbetween::WeightsOfKeysAt(int inputs, double tim
                   CATMULL_ROM == static_cast<int>(KeyInterpolation::catmull_rom) &&
                   MONOTONE_CUBIC == static_cast<int>(KeyInterpolation::monotone_cubic));
     const auto interpolation = static_cast<KeyInterpolation>(this->Interpolation);
-    const std::vector<double> weights = anamorph::KeyFrames(times, values, interpolation).at(time);
+    const std::vector<double> weights =
+        anamorph::KeyFrames(frames.times, frames.weights, interpolation).at(time);
     if (this->Mode == DELTAS || this->Interpolation != MONOTONE_CUBIC) return weights;
     return anamorph::inbetween_weights(weights, anamorph::WeightSum::normalized);
 }

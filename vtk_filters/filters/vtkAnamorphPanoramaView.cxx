@@ -7,6 +7,7 @@
 #include "anamorph/error.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/operation/pano.h"
+#include "anamorph/operation/rows.h"
 #include "anamorph/projector/projector_rows.h"
 #include "attribute_fields.h"
 #include "execution.h"
@@ -36,9 +37,13 @@ void check_size(const int* size) {
                                   "must be an integer from 1 to " + std::to_string(kMostViewSize));
 }
 
-/// The keys of recipes that are not of a filter: what has one input, one output, and no files.
-const char* const kKeysOfRecipes[] = {"subimage", "concatenate", "tile",      "mip",
-                                      "hash",     "frames",      "colorspace"};
+/// Is a key of recipes not of a filter, which has one input, no pictures of pictures and no color spaces?
+bool is_of_recipes(const std::string& key) {
+    namespace rows = anamorph::rows;
+    return key == "concatenate" || key == "colorspace" ||
+           std::find(std::begin(rows::kKeysOfRecipes), std::end(rows::kKeysOfRecipes), key) !=
+               std::end(rows::kKeysOfRecipes);
+}
 
 /// The lines of a text whose parts are separated by "&".
 std::vector<anamorph::Assignment> parse_keys(const char* keys) {
@@ -51,8 +56,7 @@ std::vector<anamorph::Assignment> parse_keys(const char* keys) {
 void check_keys(const anamorph::ParameterValues& values) {
     const auto is_refused = [&](const anamorph::Parameter& p) {
         return p.type == anamorph::ParameterType::image || p.type == anamorph::ParameterType::file ||
-               std::find(std::begin(kKeysOfRecipes), std::end(kKeysOfRecipes), p.name) !=
-                   std::end(kKeysOfRecipes);
+               is_of_recipes(p.name);
     };
     for (const anamorph::Parameter& p : values.table())
         if (values.given(p.name) && is_refused(p))

@@ -28,11 +28,6 @@ bool has_key(const std::vector<Assignment>& options, const std::string& key) {
     return std::any_of(options.begin(), options.end(), [&](const Assignment& a) { return a.key == key; });
 }
 
-anamorph::ParallelFor threads() {
-    OIIO::thread_pool& pool = *OIIO::default_thread_pool();
-    return anamorph::parallel_for_on(pool, pool.size() + 1);
-}
-
 [[noreturn]] void refuse_card(const std::string& what) {
     throw Error("a graphics card does not draw " + what + ": draw must be picture");
 }
@@ -98,7 +93,8 @@ std::vector<float> ViewedPanorama::draw(const View& view, const anamorph::Size& 
                               static_cast<std::size_t>(m_channels));
     const auto to = anamorph::packed_view(reinterpret_cast<std::byte*>(pixels.data()),
                                           anamorph::PixelType::float32, size.width, size.height, m_channels);
-    anamorph::draw_picture(*picture->solve(), m_stacks, {0, 0, size.width, size.height}, to, threads());
+    anamorph::draw_picture(*picture->solve(), m_stacks, {0, 0, size.width, size.height}, to,
+                           anamorph::default_parallel_for());
     return pixels;
 }
 

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "anamorph/parameter/parameter.h"
 
@@ -22,6 +25,33 @@ std::string entry(const char* name, std::size_t i) {
 }
 
 }  // namespace
+
+ShapeFrames frames_of_keys(const std::vector<ShapeKey>& keys, int count, const std::string& column,
+                           const std::string& one) {
+    std::map<double, std::vector<double>> frames;
+    std::set<std::pair<double, double>> seen;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const auto [time, shape, weight] = keys[i];
+        if (!std::isfinite(time))
+            throw Error(entry("Keys", i) + ".Time", shortest(time), "must be a finite number");
+        if (!(shape >= 0 && shape < count) || shape != std::floor(shape))
+            throw Error(entry("Keys", i) + "." + column, shortest(shape),
+                        "must be " + one + " from 0 to " + std::to_string(count - 1));
+        if (!seen.emplace(time, shape).second)
+            throw Error(
+                entry("Keys", i) + ".Time", shortest(time),
+                one.substr(one.find(' ') + 1) + " " + shortest(shape) + " has a key at this time already");
+        std::vector<double>& weights = frames[time];
+        weights.resize(static_cast<std::size_t>(count));
+        weights[static_cast<std::size_t>(shape)] = weight;
+    }
+    ShapeFrames result;
+    for (const auto& [time, weights] : frames) {
+        result.times.push_back(time);
+        result.weights.push_back(weights);
+    }
+    return result;
+}
 
 KeyFrames::KeyFrames(std::vector<double> times, std::vector<std::vector<double>> values,
                      KeyInterpolation interpolation)

@@ -4,6 +4,7 @@
 // still.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "anamorph/error.h"
@@ -21,6 +22,25 @@ enum class KeyInterpolation {
                     ///< weights that sum to 1 at the frames need not in between, so normalize them. The other
                     ///< ways keep the sum.
 };
+
+/// A row of a list of keys: the weight of a shape at a time.
+struct ShapeKey {
+    double time = 0;
+    double shape = 0;  ///< its number
+    double weight = 0;
+};
+
+/// Frames, in the order of their times.
+struct ShapeFrames {
+    std::vector<double> times;
+    std::vector<std::vector<double>> weights;  ///< of all shapes, in each
+};
+
+/// The frames of a list of keys in any order: at each time that has some the weights of `count` shapes, 0 where no key says one. Throws Error
+/// naming Keys[i] unless times are finite, shapes are integers from 0 to count - 1, and a shape has one key at a time. `column`: what
+/// messages call the shape's column, "Input", and `one` one of them, "an input".
+ShapeFrames frames_of_keys(const std::vector<ShapeKey>& keys, int count, const std::string& column,
+                           const std::string& one);
 
 /// Numbers given at some times, and interpolated at all others.
 class KeyFrames {

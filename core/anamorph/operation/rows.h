@@ -52,6 +52,9 @@ Parameter definitions(const char* name, const std::string& doc);
 Parameter image(const char* name, const std::string& doc);
 Parameter file(const char* name, const std::string& doc);
 
+/// Keys that only files have a use for, recipes and what they are written to; other hosts draw one picture of what they are given.
+inline constexpr const char* kKeysOfRecipes[] = {"subimage", "tile", "mip", "hash", "frames"};
+
 Parameter size(const std::string& doc);
 Parameter overscan();
 Parameter subimage();

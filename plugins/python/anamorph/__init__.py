@@ -392,12 +392,11 @@ def _parameter_name(name):
 _OF_CALLS = {"out": "an array or ImageBuf that is drawn to", "roi": "(x0, y0, x1, y1): the pixels that are drawn",
              "subimage": "of an operation that makes several pictures, which", "threads": "how many may draw; 0: all",
              "progress": "called with the number of rows that were drawn since"}
-# Keys of recipe files, and of files that pictures are written to.
-_OF_RECIPES = {"subimage", "tile", "mip", "hash", "frames"}
 
 
 def _keys_of(operation):
-    return [key for key in operation["keys"] if key["name"] not in _OF_RECIPES | set(operation["sources"]) - {operation["main_file"]}]
+    sources = set(operation["sources"]) - {operation["main_file"]}
+    return [key for key in operation["keys"] if not key["of_recipes"] and key["name"] not in sources]
 
 
 def _documentation(operation):
