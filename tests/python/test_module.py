@@ -242,6 +242,17 @@ class Recipes(unittest.TestCase):
         np.testing.assert_array_equal(anamorph.morph(inner, outer, features=lines, t=0.5),
                                       anamorph.morph(inner.draw(), outer.draw(), features=lines, t=0.5))
 
+    def test_chains_of_what_is_moved_and_what_is_mixed(self):
+        ids = noise(64, 128, 0, "uint32")
+        inner = anamorph.Picture("pano", ids, fov=70, size=(64, 48), filter="nearest")
+        self.assertEqual(inner.dtype, np.uint32)
+        mixed = anamorph.Picture("warp", inner, mesh=SHEET, filter="bilinear")
+        self.assertIn("kept differently", mixed.said["anamorph:chain"])
+        np.testing.assert_array_equal(mixed.draw(), anamorph.warp(inner.draw(), mesh=SHEET, filter="bilinear"))
+        moved = anamorph.Picture("warp", inner, mesh=SHEET, filter="nearest")
+        self.assertEqual((moved.said["anamorph:chain"], moved.dtype), ("warp of pano", np.uint32))
+        self.assertLessEqual(set(np.unique(moved.draw())), {0, *np.unique(ids)})
+
     def test_windows_and_metadata(self):
         pixels = noise(40, 60, 4)
         file = oiio.ImageOutput.create("w.exr")
