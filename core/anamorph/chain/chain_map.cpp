@@ -7,10 +7,6 @@
 namespace anamorph {
 namespace {
 
-// What of a pixel lies beyond an edge by no more than this does not count, a 512th of its area: pictures that end together do so but for
-// rounding, and for what bounds over boxes are too wide.
-constexpr double kNegligible = 0x1p-9;
-
 double middle_of(const Interval& a) {
     return 0.5 * (a.lo + a.hi);
 }
@@ -117,7 +113,14 @@ ChainMap::Local ChainMap::local_around(double x, double y, int piece) const {
     local.shift = shift_about(at.x);
     at = in_middle(at, local.shift);
     local.piece = piece_at(at.x, at.y);
-    if (local.piece >= 0) local.inner = m_inner->place_around(at.x, at.y, local.piece);
+    if (local.piece < 0) {
+        Point<double> p;
+        int source_piece = 0;
+        if (!goes_on({Interval(at.x), Interval(at.y)}) || !m_inner->exact(at.x, at.y, 0, p, source_piece))
+            return local;
+        local.piece = 0;
+    }
+    local.inner = m_inner->place_around(at.x, at.y, local.piece);
     return local;
 }
 
@@ -128,14 +131,39 @@ Cover ChainMap::cover(const Interval& x, const Interval& y, int piece, const Loc
     const Point<Interval> whole =
         in_middle(m_outer->read(Point<Interval>{widened(x, 0.5), widened(y, 0.5)}, local.outer), local.shift);
     if (misses(whole)) return Cover::outside;
+    if (!local.inner) return Cover::mixed;
     const Point<Interval> at = in_middle(m_outer->read(Point<Interval>{x, y}, local.outer), local.shift);
-    if (!local.inner || crosses_edge(widened(x, 0.5), widened(y, 0.5), whole, piece, local) ||
-        m_pieces.holding(at.x, at.y) != local.piece)
-        return Cover::mixed;
+    const bool is_cut = crosses_edge(widened(x, 0.5), widened(y, 0.5), whole, piece, local) ||
+                        m_pieces.holding(at.x, at.y) != local.piece;
+    if (is_cut && !goes_on(whole)) return Cover::mixed;
     // Where the inner map ends, whole pixels are crossed too.
-    const Point<Interval>& points = m_inner->may_end() ? whole : at;
+    const Point<Interval>& points = is_cut || m_inner->may_end() ? whole : at;
     const Cover inner = m_inner->cover(points.x, points.y, local.piece, local.inner, across_seam);
-    return inner == Cover::partial ? Cover::mixed : inner;
+    if (inner == Cover::partial) return Cover::mixed;
+    return inner == Cover::inside && is_cut ? Cover::cut : inner;
+}
+
+bool ChainMap::goes_on(const Point<Interval>& box) const {
+    const Box& frame = m_pieces.frame();
+    const bool closes = m_outer->source_period() > 0;
+    return m_pieces.all().size() == 1 && (!closes || (box.x.lo >= frame.x0 && box.x.hi <= frame.x1)) &&
+           (!m_middle.has_poles || (box.y.lo >= frame.y0 && box.y.hi <= frame.y1));
+}
+
+std::optional<EdgesOverBox> ChainMap::edges_over(const Box& box, int piece, const Way& way) const {
+    using D = Jet1<double>;
+    using I = Jet1<Interval>;
+    const Interval x(box.x0, box.x1), y(box.y0, box.y1);
+    std::vector<D> middle;
+    std::vector<I> over;
+    const bool are_known =
+        way.is_smooth &&
+        add_edges(Point<D>{D::variable(middle_of(x), 1, 0), D::variable(middle_of(y), 0, 1)}, piece, way,
+                  middle) &&
+        add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, way, over) &&
+        middle.size() == over.size();
+    if (!are_known) return {};
+    return EdgesOverBox(box, std::move(middle), std::move(over));
 }
 
 Jacobian ChainMap::jacobian(double x, double y, int piece) const {

@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "anamorph/chain/middle_edges.h"
 #include "anamorph/chain/piece_finder.h"
 #include "anamorph/plan/map_link.h"
 
@@ -47,10 +48,10 @@ class ChainMap {
     // The members that make this a FormulaMap (plan/formula_map.h).
 
     /// Where both maps are read, and how far the picture in the middle is turned there. There is no inner place where the
-    /// outer point lies beyond that picture.
+    /// outer point lies beyond that picture and the inner map does not go on.
     struct Local {
         LinkPlace outer, inner;
-        int piece = -1;  ///< of the picture in the middle
+        int piece = -1;  ///< of the picture in the middle, that holds the outer point or goes on to it
         Point<double> shift{0, 0};
     };
     Size target_size() const { return m_outer->target_size(); }
@@ -95,6 +96,11 @@ class ChainMap {
         std::optional<Point<Interval>> points = {};
     };
     Way way_of(const Interval& x, const Interval& y, int piece) const;
+    /// All edges over a box of pixels (CutMap), of pictures in the middle without gaps.
+    std::optional<EdgesOverBox> edges_over(const Box& box, int piece) const {
+        return edges_over(box, piece, way_of(Interval(box.x0, box.x1), Interval(box.y0, box.y1), piece));
+    }
+    std::optional<EdgesOverBox> edges_over(const Box& box, int piece, const Way& way) const;
     /// Of a point nothing needs to be known.
     Way way_of_values(const Point<Jet1<double>>&, int) const { return {}; }
     Way way_of_values(const Point<Jet1<Interval>>& p, int piece) const {
@@ -149,6 +155,8 @@ class ChainMap {
     int piece_near(double x, double y) const;
     /// The shift into the picture in the middle of the outer map's points near x.
     Point<double> shift_about(double x) const;
+    /// Does the picture in the middle go on beyond its edges as one formula, but for where it closes on itself and at poles?
+    bool goes_on(const Point<Interval>& box) const;
     /// The piece of the picture in the middle that holds a point; -1 where there is none.
     int piece_at(double x, double y) const { return m_pieces.holding(Interval(x), Interval(y)); }
     /// Is all of a box outside of the picture in the middle, which may close across?

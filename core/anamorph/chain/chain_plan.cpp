@@ -10,7 +10,6 @@ template class FormulaPlan<ChainMap>;
 
 void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<PartialPixel>& pixels) const {
     using D = Jet1<double>;
-    using I = Jet1<Interval>;
     const Interval x(block.x0, block.x1), y(block.y0, block.y1);
     const ChainMap::Way way = map().way_of(x, y, piece);
     if (map().is_clear_beyond(way)) return;
@@ -19,17 +18,12 @@ void ChainPlan::find(const Box& block, int piece, const Box& part, std::vector<P
     };
     // Where no map ends only pixels that an edge may cross need to be looked at.
     const bool may_end = map().ends_beyond(way);
-    std::vector<D> middle, edges;
-    std::vector<I> over;
-    const bool are_known =
-        !may_end && way.is_smooth &&
-        map().add_edges(at(0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi)), piece, way, middle) &&
-        map().add_edges(Point<I>{I::variable(x, 1, 0), I::variable(y, 0, 1)}, piece, way, over) &&
-        middle.size() == over.size();
-    const EdgesOverBox near(block, middle, over);
+    const std::optional<EdgesOverBox> near = may_end ? std::nullopt : map().edges_over(block, piece, way);
+    std::vector<D> edges;
     for (int j = part.y0; j < part.y1; ++j)
         for (int i = part.x0; i < part.x1; ++i) {
-            if (are_known && !near.may_cross(i, j)) continue;
+            const Cover cover = near ? near->cover({i, j, i + 1, j + 1}) : Cover::mixed;
+            if (cover == Cover::inside || cover == Cover::outside) continue;
             edges.clear();
             const Point<D> p = at(i + 0.5, j + 0.5);
             const bool has_point = !may_end || map().add_ends_beyond(p, piece, way, edges);

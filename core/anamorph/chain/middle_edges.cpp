@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 namespace anamorph {
 namespace {
@@ -53,20 +53,29 @@ PartialPixel part_within(int x, int y, std::span<const Jet1<double>> edges) {
     return {x, y, std::min(area, 1.0), middle + mass, high.x - low.x, high.y - low.y};
 }
 
-EdgesOverBox::EdgesOverBox(const Box& box, std::span<const Jet1<double>> middle,
-                           std::span<const Jet1<Interval>> over)
-    : m_middle{0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)}, m_edges(middle), m_over(over) {}
+EdgesOverBox::EdgesOverBox(const Box& box, std::vector<Jet1<double>> middle, std::vector<Jet1<Interval>> over)
+    : m_middle{0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)},
+      m_edges(std::move(middle)),
+      m_over(std::move(over)) {}
 
-bool EdgesOverBox::may_cross(int x, int y) const {
-    const Interval dx(x - m_middle.x, x + 1 - m_middle.x), dy(y - m_middle.y, y + 1 - m_middle.y);
-    bool crosses = false;
+Cover EdgesOverBox::cover(const Box& part) const {
+    const Interval dx(part.x0 - m_middle.x, part.x1 - m_middle.x),
+        dy(part.y0 - m_middle.y, part.y1 - m_middle.y);
+    Cover cover = Cover::inside;
     for (std::size_t i = 0; i < m_edges.size(); ++i) {
+        const Jet1<double>& edge = m_edges[i];
         // By the mean value theorem, from the middle of the box.
-        const Interval at = Interval(m_edges[i].c[0]) + m_over[i].c[1] * dx + m_over[i].c[2] * dy;
-        if (at.hi < 0) return false;
-        if (!(at.lo >= 0)) crosses = true;
+        const auto at = [&](const Interval& x, const Interval& y) {
+            return Interval(edge.c[0]) + m_over[i].c[1] * x + m_over[i].c[2] * y;
+        };
+        const Interval all = at(dx, dy);
+        if (all.hi < 0) return Cover::outside;
+        if (all.lo >= 0 || cover == Cover::cut) continue;
+        const Interval farthest =
+            at(Interval(edge.c[1] > 0 ? dx.lo : dx.hi), Interval(edge.c[2] > 0 ? dy.lo : dy.hi));
+        cover = farthest.hi < -kNegligible ? Cover::cut : Cover::mixed;
     }
-    return crosses;
+    return cover;
 }
 
 }  // namespace anamorph

@@ -64,11 +64,10 @@ class CellMap {
         p = {Real(at.x), Real(at.y)};
         return is_near(at);
     }
-    /// MapLink::jacobian().
+    /// MapLink::jacobian(): the linear terms of the map in powers of the distance from the point.
     Jacobian jacobian(double x, double y, int piece) const {
-        using J = Jet1<double>;
-        const Point<J> p = at(J::variable(x, 1, 0), J::variable(y, 0, 1), piece);
-        return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+        const Bicubic powers = local_around(x, y, piece).powers;
+        return {powers.x[1][0], powers.y[1][0], powers.x[0][1], powers.y[0][1]};
     }
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int) const {
@@ -104,8 +103,6 @@ class CellMap {
         std::once_flag once;
         Form form;
     };
-    static double value_of(double a) { return a; }
-    static double value_of(const Jet1<double>& a) { return a.c[0]; }
     /// Calls body(form) of the cell that a point is evaluated in, which may be that of `piece`.
     template <class Body>
     auto with_form(double x, double y, int piece, const Body& body) const {
@@ -117,10 +114,8 @@ class CellMap {
         return body(static_cast<const Form&>(kept.form));
     }
     /// Mesh::at(), the same bits.
-    template <class T>
-    Point<T> at(const T& x, const T& y, int piece) const {
-        return with_form(value_of(x), value_of(y), piece,
-                         [&](const Form& form) { return m_mesh->at(form.patch, x, y); });
+    Point<double> at(double x, double y, int piece) const {
+        return with_form(x, y, piece, [&](const Form& form) { return m_mesh->at(form.patch, x, y); });
     }
 
     std::shared_ptr<const Mesh> m_mesh;

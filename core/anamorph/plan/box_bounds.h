@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "anamorph/number/jets.h"
 #include "anamorph/plan/boxes.h"
@@ -24,6 +26,19 @@ inline constexpr double kSharedRounding = 1.0 / 64;
 // Smaller boxes have too few blocks for looking at their halves.
 inline constexpr int kBoxOfRoundings = 4 * kBlockWidth * kBlockHeight;
 
+/// Stands for the edges of maps that have none.
+struct NoEdges {
+    Cover cover(const Box&) const { return Cover::inside; }
+};
+template <class Map>
+struct EdgesOf {
+    using type = std::optional<NoEdges>;
+};
+template <CutMap Map>
+struct EdgesOf<Map> {
+    using type = decltype(std::declval<const Map&>().edges_over(Box(), 0));
+};
+
 /// The bounds of a map on one piece of the target.
 template <FormulaMap Map>
 class BoxBounds {
@@ -32,6 +47,7 @@ class BoxBounds {
     // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
     using Taylor = Point<Jet<double, 4>>;
     using Enclosed = Point<Jet<Interval, 5>>;
+    using Edges = typename EdgesOf<Map>::type;
 
     /// A box on one branch of the map. All of it is read with one Local, about its own middle or that of a box around it.
     struct Place {
@@ -62,9 +78,19 @@ class BoxBounds {
     Cover cover(const Box& box, const Local& local) const {
         const Cover found = m_map.cover(across(box), down(box), m_piece, local, m_options.across_seam);
         // Where a formula goes on, its bounds hold for those points that count.
-        if (found == Cover::partial)
-            return m_options.cull && culled(box, local) == Cover::outside ? Cover::outside : Cover::mixed;
+        if (found == Cover::partial || found == Cover::cut) {
+            if (m_options.cull && culled(box, local) == Cover::outside) return Cover::outside;
+            return found == Cover::cut ? Cover::cut : Cover::mixed;
+        }
         return found == Cover::inside && m_options.cull ? culled(box, local) : found;
+    }
+
+    /// The edges that cut a box, where it is known which do.
+    Edges edges_over(const Box& box) const {
+        if constexpr (CutMap<Map>)
+            return m_map.edges_over(box, m_piece);
+        else
+            return {};
     }
 
     /// Does the source image have edges beyond which nothing is drawn?

@@ -31,8 +31,9 @@
 namespace anamorph {
 
 /// Whether the points of a box have source points on one smooth branch of a map: all of them do, none has a
-/// source point, those that have one do (and the map is smooth over all of the box), or it is not known.
-enum class Cover { inside, outside, partial, mixed };
+/// source point, those that have one do and the map is smooth over all of the box, the same where edges tell which ones do (CutMap),
+/// or it is not known.
+enum class Cover { inside, outside, partial, cut, mixed };
 
 /// The directions in which nothing of a source image lies beyond its edges.
 struct SourceEdges {
@@ -96,6 +97,15 @@ concept DirectMap = FormulaMap<Map> &&
     /// The map near (a, a), for pixels up to (a, a) away, read in float or in double. Its bases are appended to `bases`.
     { map.template direct<float>(a, a, a, a, local, bases) } -> std::same_as<NearReading>;
     { map.template direct<double>(a, a, a, a, local, bases) } -> std::same_as<NearReading>;
+};
+
+/// A map whose formula goes on beyond edges of pictures that it leads through, where target points have no source point: boxes that such
+/// edges cut are Cover::cut.
+template <class Map>
+concept CutMap = FormulaMap<Map> && requires(const Map& map, const Box& box, int piece) {
+    /// The edges over a box that is cut, as something that tells the cover() of its parts, of whole pixels: Cover::cut where an edge
+    /// certainly runs, Cover::mixed where it is not known. None where they are not known.
+    { map.edges_over(box, piece)->cover(box) } -> std::same_as<Cover>;
 };
 
 /// The base class of maps from one flat picture to another. `Formula`, derived from this, gives

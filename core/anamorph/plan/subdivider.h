@@ -16,6 +16,8 @@
 
 namespace anamorph::plan_detail {
 
+// The least side of blocks that edges cut: their exact pixels cost more than what finds where the edges run.
+inline constexpr int kCutFloor = 4;
 // The factor by which a block in the middle of a box has to miss the tolerance for others of the box not to
 // be looked at.
 inline constexpr double kHopeless = 4;
@@ -78,13 +80,31 @@ class Subdivider {
             case Cover::partial:
             case Cover::mixed:
                 return split(box, [&](const Box& b) { settle(b); });
+            case Cover::cut:
+                return settle_cut(box, place);
             case Cover::inside:
                 return settle_inside(box, place);
         }
     }
 
+    /// Settles a box that edges cut as if all of it had source points; its blocks are then cut where the edges are.
+    void settle_cut(const Box& box, Place& place) {
+        auto edges = m_bounds.edges_over(box);
+        if (!edges) return split(box, [&](const Box& b) { settle(b); });
+        std::swap(m_edges, edges);
+        settle_inside(box, place);
+        std::swap(m_edges, edges);
+    }
+    /// The cover of a part of a box that is being settled, by the edges that cut this, if any do.
+    Cover cover_by_edges(const Box& box) const { return m_edges ? m_edges->cover(box) : Cover::inside; }
+    Cover cover_of_block(const Box& box) const {
+        const Cover cover = cover_by_edges(box);
+        return cover == Cover::mixed ? m_bounds.cover(box, m_bounds.place_about(box).local) : cover;
+    }
+
     /// Settles a box that lies on one branch.
     void settle_inside(const Box& box, Place& place, const Known* known = nullptr) {
+        if (cover_by_edges(box) == Cover::outside) return m_emitter.outside(box);
         if (m_scheme == Scheme::residual) return settle_residual(box, place);
         if (m_scheme == Scheme::blocks) return settle_blocks(box, place, known);
         if (m_costs.fallback().kind != Fallback::unknown || pixels_of(box) < kLeastInFloat)
@@ -235,6 +255,11 @@ class Subdivider {
     void place_block(const Box& box, const Expansion& expansion, const Local& local, const Bound& bound) {
         if (!is_block(box))
             return for_blocks(box, [&](const Box& b) { place_block(b, expansion, local, bound); });
+        if (const Cover cover = cover_of_block(box); cover == Cover::outside)
+            return m_emitter.outside(box);
+        else if (cover != Cover::inside)
+            return halve(box, is_cut_vertically(box), kCutFloor,
+                         [&](const Box& b) { place_block(b, expansion, local, bound); });
         const Fit fit = Polynomials::fit_on(expansion, box);
         if (m_polynomials.lies_beyond(fit.taylor, expansion.error, bound)) return m_emitter.outside(box);
         if (m_emitter.fit(box, local, fit, expansion.error)) return;
@@ -318,6 +343,7 @@ class Subdivider {
     PolynomialStrategy<Map> m_polynomials;
     DirectStrategy<Map> m_direct;
     ResidualStrategy<Map> m_residuals;
+    typename BoxBounds<Map>::Edges m_edges;  ///< those that cut the box that is being settled
 };
 
 }  // namespace anamorph::plan_detail
