@@ -19,13 +19,12 @@ std::size_t bytes_of(const OIIO::ImageSpec& spec, const FileRows::Pixels& pixels
            static_cast<std::size_t>(pixels.channels * size_of(pixels.type));
 }
 
-/// kRows, or as many whole rows of tiles.
-int unit_of(const OIIO::ImageSpec& spec) {
+}  // namespace
+
+int FileRows::unit_of(const OIIO::ImageSpec& spec) {
     if (spec.tile_width == 0) return kRows;
     return std::max(1, kRows / spec.tile_height) * spec.tile_height;
 }
-
-}  // namespace
 
 FileRows::FileRows(Opener open, const std::string& file, int subimage, const OIIO::ImageSpec& spec,
                    const Pixels& pixels, std::unique_ptr<OIIO::ImageInput> opened)

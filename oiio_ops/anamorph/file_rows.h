@@ -32,6 +32,9 @@ class FileRows {
         int channels;
         OIIO::TypeDesc format;
     };
+    /// The number of rows of a file that are decoded together: 64, or as many as whole rows of its tiles have.
+    static int unit_of(const OIIO::ImageSpec& spec);
+
     /// Reads nothing yet. `file`: its name. `spec`: that of the file when it was opened. `opened`: the file, where it is open
     /// already, or null. Throws std::bad_alloc.
     FileRows(Opener open, const std::string& file, int subimage, const OIIO::ImageSpec& spec,
@@ -58,7 +61,7 @@ class FileRows {
     const int m_subimage;
     const OIIO::ImageSpec m_spec;
     const OIIO::TypeDesc m_format;
-    const int m_unit;  ///< rows that are decoded together: whole tiles, if there are any
+    const int m_unit;  ///< unit_of()
     const Pages m_pages;
     const ConstImageView m_view;
     /// The rows that are decoded. The first is set before the end, so that a reader who sees the end sees it.

@@ -89,6 +89,8 @@ class CacheSource final : public Source {
     CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage);
 
     const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
+    /// The file's name as messages have it.
+    const std::string& name() const { return m_shown; }
     /// The specs of all levels that serve, as the file has them.
     std::vector<OIIO::ImageSpec> specs() const;
     /// The names of all subimages of the file, where it was asked itself for the first; empty names of those that have

@@ -17,33 +17,40 @@ std::string filtering_space(const ParameterValues& values, PixelKind pixels) {
 
 SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const SourceFaces& faces,
                          const std::string& colorspace, const OverSource& over)
-    : m_image(std::move(image)), m_top(m_image.get()) {
+    : m_image(std::move(image)), m_faces(faces), m_full(m_image.get()) {
     if (const StoredOrder order(spec); !order.is_upright()) {
         m_upright = std::make_unique<UprightSource>(*m_image, order);
-        m_top = m_upright.get();
+        m_full = m_upright.get();
     }
     if (!colorspace.empty()) {
         m_space = WorkingSpace::make(colorspace, spec);
         if (m_space) {
-            m_working = std::make_unique<WorkingSource>(*m_top, m_space);
-            m_top = m_working.get();
+            m_working = std::make_unique<WorkingSource>(*m_full, m_space);
+            m_full = m_working.get();
         }
     }
-    m_over = over(*m_top);
-    if (m_over) m_top = m_over.get();
+    m_over = over(*m_full);
+    if (m_over) m_full = m_over.get();
     // Coarser levels of a file blend faces that do not halve.
     if (auto* file = dynamic_cast<CacheSource*>(m_image.get()); file && faces.columns * faces.rows > 1)
         file->keep_first_level();
-    m_pyramid = std::make_unique<Pyramid>(*m_top, faces.columns, faces.rows);
+    m_pyramid = levels_over(*m_full);
     m_top = m_pyramid.get();
 }
 
 SourceStack::~SourceStack() = default;
 
+std::unique_ptr<Source> SourceStack::levels_over(const Source& source) const {
+    return std::make_unique<Pyramid>(source, m_faces.columns, m_faces.rows);
+}
+
+const CacheSource* SourceStack::file() const {
+    return dynamic_cast<const CacheSource*>(m_image.get());
+}
+
 std::string SourceStack::error() const {
     if (const auto* faces = dynamic_cast<const FaceSource*>(m_image.get())) return faces->error();
-    const auto* file = dynamic_cast<const CacheSource*>(m_image.get());
-    return file ? file->error() : "";
+    return file() ? file()->error() : "";
 }
 
 SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,

@@ -30,6 +30,12 @@ class SourceStack {
     ~SourceStack();
 
     const Source& top() const { return *m_top; }
+    /// The stage that coarser levels are made of where the image has none.
+    const Source& full() const { return *m_full; }
+    /// Those levels made of another source, which has the sizes of full(). Keeps a reference.
+    std::unique_ptr<Source> levels_over(const Source& source) const;
+    /// The file that is read; null where there are several, or none.
+    const CacheSource* file() const;
     const WorkingSpace* space() const { return m_space.get(); }
     /// The reason that the last failed read failed; empty where none did.
     std::string error() const;
@@ -37,7 +43,8 @@ class SourceStack {
   private:
     std::unique_ptr<Source> m_image, m_upright, m_working, m_over, m_pyramid;
     std::shared_ptr<const WorkingSpace> m_space;
-    const Source* m_top;
+    SourceFaces m_faces;
+    const Source *m_full, *m_top;
 };
 
 /// The sources of pictures, as many as the operation takes, null where one is missing.

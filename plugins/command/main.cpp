@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// anamorph-pictures, which anamorph runs: hash, draw and join.
+// anamorph-pictures, which anamorph runs: hash, draw, join and explain.
 #include <OpenImageIO/imageio.h>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +14,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
+#include "explain.h"
 #include "part_file.h"
 #include "picture_reader.h"
 
@@ -40,8 +41,10 @@ void declare_recipes() {
 void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     struct Given {
         std::string recipe, output;
-        std::optional<std::string> part;
+        std::optional<std::string> part, crop;
         std::vector<std::string> names;
+        int subimage = 0;
+        bool timed = false;
     };
     const auto given = std::make_shared<Given>();
 
@@ -82,6 +85,22 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
         ->option_text("FILE");
     join->callback([=, &run] {
         run = [=] { std::cout << hash_digits(join_parts(given->names, given->output)) << std::endl; };
+    });
+
+    CLI::App* explained = app.add_subcommand(
+        "explain", "Say by what a recipe's picture is drawn, how exactly, and what that reads");
+    explained->add_option("RECIPE", given->recipe, "view.pano, or pano.exr.pano?to=rectilinear&fov=90")
+        ->required();
+    explained->add_option("--crop", given->crop, "The part of the picture that is meant")
+        ->option_text("WxH+X+Y");
+    explained->add_option("--subimage", given->subimage, "The frame of a film, or the part, from 0 on")
+        ->option_text("N");
+    explained->add_flag("--time", given->timed, "Draw it as well, and say how long that takes");
+    explained->callback([=, &run] {
+        run = [=] {
+            declare_recipes();
+            explain(given->recipe, given->crop, given->subimage, given->timed, std::cout);
+        };
     });
 }
 

@@ -51,7 +51,7 @@ class Help(unittest.TestCase):
     def test_pages_of_what_is_done_with_pictures(self):
         if not os.path.exists(os.path.join(os.path.dirname(PROGRAM), "anamorph-pictures")):
             self.skipTest("this build has no OpenImageIO")
-        for name in ("hash", "draw", "join"):
+        for name in ("hash", "draw", "join", "explain"):
             self.assertEqual(run("help", name), run(name, "--help"))
             self.assertIn("Usage: anamorph " + name, run("help", name)[1])
 

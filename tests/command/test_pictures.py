@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""anamorph hash, draw and join: one hash, however a picture is drawn, stored, shared out, stopped and taken up again."""
+"""anamorph hash, draw and join: one hash, however a picture is drawn, stored, shared out, stopped and taken up again. And explain: what it
+says is what happens."""
 import os
 import pathlib
 import re
@@ -216,6 +217,82 @@ class Pictures(unittest.TestCase):
             self.assertEqual((status, out), (1, ""), name)
             self.assertRegex(error.splitlines()[-1], rf"^anamorph: {name}: .*[a-z]{{4}}")  # libpng speaks before
             self.assertFalse((self.folder / name).exists())
+
+    def explained(self, *arguments):
+        """The lines of a page by their first words; several of one word are told apart by their number."""
+        lines = {}
+        for text in self.ok("explain", *arguments).splitlines():
+            word, said = text[:18].strip(), text[19:]
+            while word in lines:
+                word += "'"
+            lines[word] = said
+        return lines
+
+    def blocks(self, page):
+        """The shares of the picture, in percent, and the bounds of each kind of blocks."""
+        found = {word: re.match(r"([\d.e-]+)%.*? block(?:s, bound ([\d.e-]+)|, bound ([\d.e-]+))?", said) for word, said in page.items()}
+        return {word: (float(m[1]), float(m[2] or m[3] or 0)) for word, m in found.items() if m}
+
+    def test_explains_how_a_picture_is_drawn(self):
+        page = self.explained("sky.pano")
+        self.assertEqual(page["picture"], "900 x 700, 3 channels, uint8")
+        self.assertEqual(page["source"], "noise.ppm, 256 x 128")
+        blocks = self.blocks(page)
+        self.assertAlmostEqual(sum(share for share, _ in blocks.values()), 100, delta=0.05)
+        self.assertEqual(float("%.4g" % float(page["max_error"])), max(bound for _, bound in blocks.values()))
+        self.assertLessEqual(float(page["max_error"]), 0.01)
+        # All pixels by the formula, and of one map of a morph as of the other.
+        exact = self.explained("sky.pano?tol=0")
+        self.assertEqual((exact["exact_fraction"], sorted(word.split()[0] for word in self.blocks(exact))[0]), ("1", "direct"))
+        part = self.explained("sky.pano", "--crop", "64x32+100+200")
+        self.assertEqual(part["part"], "64x32+100+200")
+        self.assertAlmostEqual(sum(share for share, _ in self.blocks(part).values()), 100, delta=0.05)
+        self.assertNotIn("time", part)
+        timed = self.explained("sky.pano", "--time")
+        self.assertRegex(timed.pop("time"), r"^opened in [\d.e-]+ s, planned in [\d.e-]+, drawn in [\d.e-]+, of which [\d.e-]+ for reading$")
+        self.assertEqual(timed, page)
+
+    def test_explains_what_is_read(self):
+        # Straight up, no more than the upper rows are needed: a file that ends behind them will do, and one that lacks the last of
+        # them will not.
+        (self.folder / "up.pano").write_text("src=noise.ppm\nto=rectilinear\nfov=40\npitch=90\nsize=64x64\nfilter=bilinear\n")
+        self.assertEqual(self.explained("up.pano")["level 0"], "rows 0 to 63 of 128, 49.2 kB")
+        noise = self.folder / "noise.ppm"
+        whole, header = noise.read_bytes(), len(b"P6\n256 128\n255\n")
+        before = self.hash("up.pano")
+        for count, serves in ((64, True), (63, False)):
+            noise.write_bytes(whole[:header + 3 * 256 * count])
+            os.utime(noise, ns=(10**18 + count, 10**18 + count))
+            if serves:
+                self.assertEqual(self.hash("up.pano"), before)
+            else:
+                self.assertEqual(self.run_program("hash", "up.pano")[0], 1)
+        self.assertEqual(self.explained("up.pano?output=stmap")["no level"], "is read")
+
+    def test_explains_other_pictures(self):
+        self.ok("draw", "sky.pano?size=128x64&fov=100", "-o", "small.tif")
+        page = self.explained("l.lens?lens=brown:k1=-0.05&fov=60&src=sky.pano")
+        self.assertEqual(page["chain"], "lens of pano")
+        apart = self.explained("sky.pano?concatenate=0&src=(noise.ppm.lens?lens=brown:k1=-0.05&fov=60)")
+        self.assertIn("a recipe that is drawn first", apart["source"])
+        self.assertIn("tiles", apart["level 0"])
+        (self.folder / "f.json").write_text('{"features": [{"line": [[10, 10, 90, 90], [20, 10, 90, 80]]}]}')
+        page = self.explained("m.morph?a=noise.ppm&b=noise.ppm&features=f.json&frames=3", "--subimage", "1")
+        self.assertTrue(page["picture"].endswith(", one of 3") and "source'" in page, page)
+        page = self.explained("noise.ppm.drape?surface=sphere&size=64x64")
+        self.assertIn("source", page)
+
+    def test_refuses_to_explain(self):
+        for message, arguments in (("RECIPE=noise.ppm: must be the name of a recipe", ["noise.ppm"]),
+                                   ("crop=x: must be WIDTHxHEIGHT+X+Y", ["sky.pano", "--crop", "x"]),
+                                   ("must be WIDTHxHEIGHT+X+Y", ["sky.pano", "--crop", "9x9+1+1+1"]),
+                                   ("must be WIDTHxHEIGHT+X+Y", ["sky.pano", "--crop", "2147483647x2+2147483647+1"]),
+                                   ("must be WIDTHxHEIGHT+X+Y", ["sky.pano", "--crop", "0x9+1+1"]),
+                                   ("crop=9x9+900+0: must meet the picture, 900x700+0+0", ["sky.pano", "--crop", "9x9+900+0"]),
+                                   ("subimage=1: must be an integer from 0 to 0", ["sky.pano", "--subimage", "1"]),
+                                   ("subimage=-1", ["sky.pano", "--subimage=-1"]),
+                                   ("fov=400", ["sky.pano?fov=400"])):
+            self.refused(message, "explain", *arguments)
 
     def test_says_where_a_program_is_missing(self):
         alone = shutil.copy(PROGRAM, self.folder)

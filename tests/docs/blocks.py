@@ -51,7 +51,7 @@ LINES = [
     Line(r"ffmpeg ", ("oiio",)),
     Line(r"anamorph-figure ", ("command",)),
     Line(r"anamorph-machine ", ("command",)),
-    Line(r"(parallel )?anamorph (hash|draw|join) ", (), why="tests/command/test_pictures.py draws and joins, and runs these of parallel"),
+    Line(r"(parallel )?anamorph (hash|draw|join|explain) ", (), why="tests/command/test_pictures.py draws, joins and explains, and runs these of parallel"),
     Line(r"build/release/tests/core/anamorph_core_tests ", (),
          why="its tests are run one by one; test_blocks.py looks whether the filter finds some"),
     Line(r"ctest --preset ", (), why="this test is one of them; test_blocks.py looks for the presets and the tests' names"),

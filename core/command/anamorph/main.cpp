@@ -21,7 +21,7 @@
 namespace anamorph::command {
 namespace {
 
-constexpr std::string_view kOfPictures[] = {"hash", "draw", "join"};
+constexpr std::string_view kOfPictures[] = {"hash", "draw", "join", "explain"};
 
 /// Becomes the program beside this one that has these subcommands. Throws Error where it cannot.
 void run_pictures(char** argv) {
@@ -51,7 +51,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "anamorph " + std::string(version()));
     CLI::App* help = app.add_subcommand("help", "List the operations, or the keys of one");
-    app.footer("hash, draw and join: of pictures (anamorph hash --help)");
+    app.footer("hash, draw, join and explain: of pictures (anamorph hash --help)");
     std::string operation;
     help->add_option("OPERATION", operation, "Its name; without, all are listed");
     CLI::App* command = app.add_subcommand("run", "Run a command that finds the plugin for OpenImageIO");
