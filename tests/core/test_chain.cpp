@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "anamorph/chain/joined.h"
+#include "anamorph/chain/middle_edges.h"
 #include "anamorph/formula/text_plan.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/lens/lens_plan.h"
@@ -762,6 +763,78 @@ TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
             EXPECT_LT(largest, 0.02);
             EXPECT_LT(sum, 0.004L * std::max(crossed, 1));
         }
+}
+
+// Pixels that an edge of the picture in the middle crosses are exact, and few beside them: blocks are cut down to four pixels.
+TEST(Chain, IsExactInNarrowBandsAlongEdges) {
+    const Size size{1000, 800};
+    const Settings settings;
+    const Joined joined =
+        joined_of({pano_link(flat(size, 84), flat(size, 76), {6, 3, 10}, settings),
+                   lens_link("brown:k1=-0.1,k2=0.02", LensMode::undistort, size, size, settings)});
+    ASSERT_TRUE(joined.picture) << joined.reason;
+    std::int64_t exact = 0, crossed = 0;
+    const BlockMap& map = *joined.picture->maps[0].blocks;
+    const auto seen = [&](int x, int y) { return map.seen(x + 0.5, y + 0.5, 0); };
+    for (std::int64_t region = 0; region < map.regions(); ++region)
+        for (const Block& block : map.blocks(region))
+            if (block.kind == Block::Kind::exact)
+                exact += std::int64_t{block.box.width()} * block.box.height();
+    for (int y = 0; y + 1 < size.height; ++y)
+        for (int x = 0; x + 1 < size.width; ++x)
+            crossed += seen(x, y) != seen(x + 1, y) || seen(x, y) != seen(x, y + 1);
+    ASSERT_GT(crossed, 500);
+    EXPECT_GE(exact, crossed);
+    EXPECT_LT(exact, 5 * crossed);
+}
+
+TEST(EdgesOverBox, TellsWhatLiesWithin) {
+    test::Random random(2611);
+    int counts[5] = {};
+    for (int trial = 0; trial < 3000; ++trial) {
+        const Box box{-7, 5, 25, 21};
+        const double cx = 9, cy = 13;
+        // Two edges, each linear but for the square of its own distance from the middle.
+        double a[2][4];
+        std::vector<Jet1<double>> middle(2);
+        std::vector<Jet1<Interval>> over(2);
+        for (int i = 0; i < 2; ++i) {
+            a[i][0] = random.between(-15, 25), a[i][1] = random.between(-1, 1),
+            a[i][2] = random.between(-1, 1), a[i][3] = random.between(-0.01, 0.01);
+            for (int k = 0; k < 3; ++k) middle[i].c[k] = a[i][k];
+            const double wide = std::fabs(a[i][3]) * 32, high = std::fabs(a[i][3]) * 16;
+            over[i].c[1] = Interval(a[i][1] - wide, a[i][1] + wide);
+            over[i].c[2] = Interval(a[i][2] - high, a[i][2] + high);
+        }
+        const auto least = [&](double x, double y) {
+            double value = HUGE_VAL;
+            for (const auto& f : a)
+                value = std::min(value, f[0] + f[1] * (x - cx) + f[2] * (y - cy) +
+                                            f[3] * ((x - cx) * (x - cx) + (y - cy) * (y - cy)));
+            return value;
+        };
+        const EdgesOverBox edges(box, middle, over);
+        Box part{static_cast<int>(random.between(-7, 25)), static_cast<int>(random.between(5, 21)), 0, 0};
+        part.x1 = part.x0 + 1 + static_cast<int>(random.between(0, 24 - part.x0));
+        part.y1 = part.y0 + 1 + static_cast<int>(random.between(0, 20 - part.y0));
+        const Cover cover = edges.cover(part);
+        ++counts[static_cast<int>(cover)];
+        double lowest = HUGE_VAL, highest = -HUGE_VAL, corner = HUGE_VAL;
+        for (int j = 0; j <= 8; ++j)
+            for (int i = 0; i <= 8; ++i) {
+                const double value =
+                    least(part.x0 + part.width() * i / 8.0, part.y0 + part.height() * j / 8.0);
+                lowest = std::min(lowest, value), highest = std::max(highest, value);
+                if (i % 8 == 0 && j % 8 == 0) corner = std::min(corner, value);
+            }
+        EXPECT_TRUE(cover != Cover::inside || lowest >= 0) << trial;
+        EXPECT_TRUE(cover != Cover::outside || highest < 0) << trial;
+        EXPECT_TRUE(cover != Cover::cut || corner < -0x1p-9) << trial;
+    }
+    // What is clear is told, and most of it is.
+    for (const Cover cover : {Cover::inside, Cover::outside, Cover::cut})
+        EXPECT_GT(counts[static_cast<int>(cover)], 300);
+    EXPECT_LT(counts[static_cast<int>(Cover::mixed)], 300);
 }
 
 TEST(Chain, SaysWhyItDoesNotJoin) {
