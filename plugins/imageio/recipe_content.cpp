@@ -212,6 +212,7 @@ class RecipeContent final : public Content {
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
         m_says_hash = values.knows("hash") && values.toggle("hash");
+        if (values.knows("reached")) m_says_reached = values.toggle("reached");
         if (values.knows("mip") && values.toggle("mip"))
             while (m_pictures->picture(0, m_levels)) ++m_levels;
         const bool has_tiles = !known.empty() && (images[0].content ? !images[0].content->prefers_scanlines()
@@ -247,10 +248,8 @@ class RecipeContent final : public Content {
         Level& l = this->level(subimage, level);
         std::call_once(l.once, [&] {
             l.spec = l.header;
-            // What a film of many frames reached is not known without solving them all, nor what a picture did whose
-            // pixels have to be drawn for that.
-            if (l.solved && !l.solved->picture().reached_by_drawing())
-                add_attributes(l.spec, l.solved->reached());
+            // What a film of many frames reached is not known without solving them all.
+            if (l.solved) say_reached(*l.solved, l.spec);
             if (const std::string keys = first_parts(); !keys.empty())
                 l.spec.attribute("anamorph:first_part", keys);
             if (m_says_hash && level == 0) l.spec.attribute("anamorph:hash", hash_of(subimage));
@@ -303,6 +302,14 @@ class RecipeContent final : public Content {
         hasher.add_picture(level(subimage, 0).header,
                            [&](const Box& box, std::byte* pixels) { read(subimage, 0, box, pixels); });
         return hash_digits(hasher.hash());
+    }
+
+    /// What a picture reached; where its pixels have to be drawn for that and nobody asked, what is known without.
+    void say_reached(Solved& solved, ImageSpec& spec) const {
+        if (!solved.picture().reached_by_drawing() || m_says_reached.value_or(false))
+            return add_attributes(spec, solved.reached());
+        add_attributes(spec, solved.picture().known());
+        if (m_says_reached) spec.attribute("anamorph:not_computed", "max_error: reached=1 computes it");
     }
 
     /// Draws channels of several types: in float, and then each in its own.
@@ -557,6 +564,7 @@ class RecipeContent final : public Content {
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
     bool m_prefers_scanlines = false, m_says_hash = false;
+    std::optional<bool> m_says_reached;  ///< none where the operation has no key of it
     int m_levels = 1;
     bool m_stored = false;                                ///< as moves_stored() says
     bool m_moves_channels = false;                        ///< as moves_channels_stored() says

@@ -37,7 +37,7 @@ std::shared_ptr<const DrapedSurface> surface_called(const std::string& name) {
 BlockFrame frame_of(const BlockMachine& machine, const std::string& surface, const CameraPose& pose,
                     int screen, int picture) {
     const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), {screen, screen});
-    return run_block_machine(machine, *surface_called(surface), camera, {picture, picture});
+    return MachineBlocks(machine, surface_called(surface), camera, {picture, picture}).draw_all(serial_for);
 }
 
 /// A picture of n x n in blocks of d on a screen of n x n: each of (n / d)^2 blocks is seen with w more pixels of each
@@ -454,6 +454,48 @@ TEST(BlockMachine, DepthsOfPixelsHideWhatLiesBehind) {
     EXPECT_GT(coarse, fine);
 }
 
+TEST(BlockMachine, PartsOfAFrameAreThoseOfTheWhole) {
+    constexpr int kScreen = 200;
+    constexpr unsigned kSeed = 31;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    CameraPose pose;
+    pose.position = {0.4, 0.6, 1.6};
+    const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), {kScreen, kScreen - 30});
+    for (const Addressing addresses : {Addressing::segments, Addressing::repeated, Addressing::direct})
+        for (const Hiding hidden : {Hiding::sort, Hiding::z_buffer})
+            for (const int segment : {1, 8, 96})
+                for (const int fraction : {4, 12}) {
+                    BlockMachine machine;
+                    machine.addresses = addresses;
+                    machine.hidden = hidden;
+                    machine.segment = segment;
+                    machine.fraction_bits = fraction;
+                    machine.address_bits = fraction + 7;
+                    machine.buckets = 5;
+                    const MachineBlocks blocks(machine, surface_called("torus"), camera, {90, 70});
+                    const BlockFrame whole = blocks.draw_all(serial_for);
+                    EXPECT_GT(whole.counts.pixels, 1000);
+                    EXPECT_GT(whole.counts.saturated, 0);
+                    for (int i = 0; i < 6; ++i) {
+                        const auto at = [&](int most) {
+                            return std::uniform_int_distribution<int>(0, most - 1)(random);
+                        };
+                        const int x = at(kScreen), y = at(kScreen - 30);
+                        const Box box{x, y, x + 1 + at(kScreen - x), y + 1 + at(kScreen - 30 - y)};
+                        const BlockFrame part = blocks.draw(box);
+                        for (int row = box.y0; row < box.y1; ++row)
+                            for (int column = box.x0; column < box.x1; ++column) {
+                                const std::size_t p = part.index(column, row), w = whole.index(column, row);
+                                ASSERT_EQ(part.block[p], whole.block[w]);
+                                ASSERT_EQ(part.addresses[p].x, whole.addresses[w].x);
+                                ASSERT_EQ(part.addresses[p].y, whole.addresses[w].y);
+                                ASSERT_EQ(part.beyond[p], whole.beyond[w]);
+                            }
+                    }
+                }
+}
+
 /// The pixels of a picture of `channels` floats that the machine shows.
 std::vector<float> shown(const BlockMachine& machine, const std::vector<float>& picture, int n, int channels,
                          Filter filter, const CameraPose& pose, const std::string& surface) {
@@ -487,7 +529,10 @@ TEST(BlockMachine, PixelsAreInterpolatedBetweenMeans) {
             BlockMachine machine;
             machine.weight_bits = 3;
             machine.texel_bits = texel_bits;
-            const BlockFrame frame = frame_of(machine, "waves", pose, kSide, kSide);
+            const MachineBlocks blocks(machine, surface_called("waves"),
+                                       Camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), {kSide, kSide}),
+                                       {kSide, kSide});
+            const BlockFrame frame = blocks.draw_all(serial_for);
             const std::vector<float> drawn = shown(machine, picture, kSide, kChannels, filter, pose, "waves");
             const auto stored = [&](int i, int j, double width, double height, int c) {
                 double sum = 0, area = 0;
@@ -512,7 +557,7 @@ TEST(BlockMachine, PixelsAreInterpolatedBetweenMeans) {
                     EXPECT_EQ(drawn[k * kChannels], 0);
                     continue;
                 }
-                const Jacobian& b = frame.steps[static_cast<std::size_t>(frame.block[k])];
+                const Jacobian& b = blocks.steps()[static_cast<std::size_t>(frame.block[k])];
                 const bool means = filter == Filter::antialias;
                 const double width = means ? std::max(1.0, std::fabs(b.x_i) + std::fabs(b.x_j)) : 1,
                              height = means ? std::max(1.0, std::fabs(b.y_i) + std::fabs(b.y_j)) : 1;

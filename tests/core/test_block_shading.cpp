@@ -120,7 +120,7 @@ struct Scene {
                                               PixelType::float32, kSide, kSide, channels));
         BlockPixels pixels(map, machine, Border(Chart(Projection::rectilinear, kSide, kSide), Wrap::clamp),
                            Filter::bilinear);
-        pixels.light({machine, *surface, camera, {kSide, kSide}, map->frame(), lighting}, alpha);
+        pixels.light({machine, surface, camera, {kSide, kSide}, map->blocks_of_machine(), lighting}, alpha);
         EXPECT_TRUE(pixels.draw(
             &source, {0, 0, kSide, kSide},
             packed_view(reinterpret_cast<std::byte*>(to.data()), PixelType::float32, kSide, kSide, channels),

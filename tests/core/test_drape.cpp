@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -318,6 +319,140 @@ TEST(Drape, SheetsCloseTogetherStayInTheirOrder) {
         EXPECT_NEAR(points[2 * k], 0.5 + 0.1 + (0.1 - x), 1e-3);
     }
     EXPECT_GT(turned, 2000);
+}
+
+/// How far depths are from those of the points that are shown, by the oracle; at most the bounds of their patches.
+struct DepthErrors {
+    double worst = 0, bound = 0;
+    int pixels = 0;
+};
+template <class Position>
+DepthErrors depth_errors(const Scene& scene, double tol, const Position& position) {
+    const Shown shown(scene);
+    const Facets facets = cut_into_facets(shown.tree()->tree, shown.camera(), tol);
+    const DrapeMap map(facets, shown.camera(), scene.picture, tol);
+    DepthErrors errors;
+    errors.bound = map.max_depth_error();
+    for (int y = 0; y < scene.screen.height; ++y)
+        for (int x = 0; x < scene.screen.width; ++x) {
+            const auto region = map.region_at(x, y);
+            const SeenPixels& pixels = region->pixels();
+            const std::size_t at = pixels.index(x, y);
+            if (pixels.facet[at] == SeenPixels::kNone) continue;
+            const double nearness = map.nearness_at(pixels, at),
+                         depth = map.inverse_depth() ? 1 / nearness : -nearness;
+            const test::Real truth =
+                test::oracle_sight(scene.pose, scene.screen, position(pixels.u[at], pixels.v[at])).ahead;
+            const double off = static_cast<double>(std::fabs(truth - depth)),
+                         allowed = facets.leaves[map.facet(pixels.facet[at]).leaf].depth_bound;
+            EXPECT_LE(off, allowed) << scene.surface << " " << tol << " at " << x << "," << y;
+            EXPECT_LE(allowed, errors.bound);
+            errors.worst = std::max(errors.worst, off);
+            ++errors.pixels;
+        }
+    return errors;
+}
+
+TEST(Drape, DepthsAreWithinTheirBound) {
+    for (const Scene& scene : scenes())
+        for (const double tol : {0.02, 0.5, 8.0}) {
+            const DepthErrors errors = depth_errors(scene, tol, [&](double u, double v) {
+                return test::oracle_surface(scene.surface, scene.shape, u, v);
+            });
+            EXPECT_GT(errors.pixels, 500) << scene.surface;
+            // The bound is no guess far above, where there is any error but rounding.
+            if (errors.worst > 1e-9) {
+                EXPECT_LE(errors.bound, 60 * errors.worst) << scene.surface << " " << tol;
+            }
+        }
+}
+
+TEST(Drape, ABumpTowardsAParallelCameraHasABoundOfItsDepth) {
+    // No point of the screen moves, so that few patches serve, flat or nearly so where the bump is.
+    Scene scene{"plane"};
+    scene.pose.perspective = false;
+    scene.pose.extent = 1;
+    Deformation bump;
+    bump.vector = {0, 0, 0.3};
+    bump.center = {0.5, 0.5};
+    bump.extent = {0.1, 0.15};
+    scene.deformations = {bump};
+    const DepthErrors errors = depth_errors(scene, 0.125, [&](double u, double v) {
+        // Oka 1987, eq. 4.2: the bump is exp(-r^2), v up.
+        const test::Real across = (test::Real(u) - 0.5L) / 0.1L, up = (0.5L - test::Real(v)) / 0.15L;
+        const test::Vector flat = test::oracle_surface("plane", scene.shape, u, v);
+        return test::Vector{flat[0], flat[1], test::Real(0.3) * std::exp(-across * across - up * up)};
+    });
+    EXPECT_GT(errors.worst, 0.05);
+    EXPECT_GT(errors.bound, errors.worst);
+    EXPECT_LT(errors.bound, 100 * errors.worst);
+}
+
+/// A surface that counts what it is asked for.
+class Counting final : public DrapedSurface {
+  public:
+    explicit Counting(const std::string& name) : m_of(make_surface(number_of(name), SurfaceShape{})) {}
+
+    glm::dvec3 position(double u, double v) const noexcept override {
+        ++points;
+        return m_of->position(u, v);
+    }
+    double rounding(double u, double v) const noexcept override { return m_of->rounding(u, v); }
+    SurfaceFrame frame(double u, double v) const noexcept override {
+        ++frames;
+        return m_of->frame(u, v);
+    }
+    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
+        return m_of->truth(u, v);
+    }
+    SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
+        ++ranges;
+        return m_of->range(u, v);
+    }
+    Certainty missing(const Interval& u, const Interval& v) const noexcept override {
+        return m_of->missing(u, v);
+    }
+    mutable std::atomic<int> points = 0, frames = 0, ranges = 0;
+
+  private:
+    std::shared_ptr<const DrapedSurface> m_of;
+};
+
+TEST(Drape, ATileAsksForItsOwnBlocks) {
+    const auto surface = std::make_shared<Counting>("waves");
+    Scene scene{"waves"};
+    scene.own = surface;
+    scene.screen = scene.picture = {256, 256};
+    const Plain plain(scene.picture, {0.25f, 0.5f, 0.75f});
+    for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
+        DrapeOptions options;
+        options.scheme = scheme;
+        options.filter = Filter::antialias;
+        options.lighting.shading = DrapeShading::phong;
+        options.block = 4;
+        constexpr int kBlocks = 64 * 64;
+        const Shown shown(scene, options);
+        const Drape drape(shown.tree(), shown.camera(), scene.picture, options);
+        const auto drawn = [&](const Box& box) {
+            surface->points = surface->frames = surface->ranges = 0;
+            std::vector<float> pixels(static_cast<std::size_t>(box.width() * box.height() * 3));
+            EXPECT_TRUE(drape.draw(plain.source(), box,
+                                   packed_view(reinterpret_cast<std::byte*>(pixels.data()),
+                                               PixelType::float32, box.width(), box.height(), 3),
+                                   serial_for));
+        };
+        // Five points and four lit corners for each block of the tile, and of the runs that these are made in.
+        drawn({92, 92, 124, 124});
+        EXPECT_GT(surface->points, 0);
+        EXPECT_LT(surface->points, 5 * kBlocks / 4);
+        EXPECT_GT(surface->frames, 0);
+        EXPECT_LT(surface->frames, 4 * kBlocks / 4);
+        EXPECT_EQ(surface->ranges, 0) << "nothing is bounded";
+        drawn({92, 92, 124, 124});
+        EXPECT_EQ(surface->points, 0);
+        drape.reached(serial_for);
+        EXPECT_GT(surface->ranges, 0);
+    }
 }
 
 TEST(Drape, HardCasesAreDrawn) {

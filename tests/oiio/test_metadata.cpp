@@ -498,8 +498,47 @@ TEST_F(Metadata, ToleranceIsSaidWhereOneIsHeld) {
     for (const char* none : {"city.exr.drape?size=16&scheme=hardware", "city.exr.drape?size=16&scheme=oka",
                              "city.exr.drape?size=16&scheme=oka-z"}) {
         EXPECT_FALSE(says(none)) << none;
-        EXPECT_GE(spec_of(none).get_float_attribute("anamorph:max_error", -1), 0) << none;
+        EXPECT_GE(spec_of(none + std::string("&reached=1")).get_float_attribute("anamorph:max_error", -1), 0)
+            << none;
     }
+}
+
+TEST_F(Metadata, WhatTakesDrawingIsSaidOnRequest) {
+    const ImageBuf city("city.exr");
+    const std::string keys = "surface=sphere&size=40";
+    for (const std::string scheme : {"oka", "oka-z", "hardware", "exact"}) {
+        const std::string name = "city.exr.drape?" + keys + "&scheme=" + scheme;
+        const ImageSpec opened = spec_of(name), asked = spec_of(name + "&reached=1");
+        EXPECT_EQ(opened.find_attribute("anamorph:max_error"), nullptr) << scheme;
+        EXPECT_EQ(opened.get_string_attribute("anamorph:not_computed"), "max_error: reached=1 computes it");
+        EXPECT_EQ(asked.find_attribute("anamorph:not_computed"), nullptr) << scheme;
+        // The same numbers as the function says, which draws all of it.
+        const ImageBuf drawn = apply(
+            "drape", {&city}, options({{"surface", "sphere"}, {"size", "40"}, {"scheme", scheme.c_str()}}));
+        for (const char* number : {"anamorph:max_error", "anamorph:exact_fraction"}) {
+            EXPECT_GE(asked.get_float_attribute(number, -1), 0) << scheme;
+            EXPECT_EQ(asked.get_float_attribute(number, -1), drawn.spec().get_float_attribute(number, -2))
+                << scheme;
+        }
+        EXPECT_GT(opened.get_int_attribute("anamorph:patches", -1), 0) << scheme;
+        EXPECT_EQ(opened.get_int_attribute("anamorph:patches", -1),
+                  asked.get_int_attribute("anamorph:patches", -2));
+        EXPECT_EQ(read_pixels(name).bytes, read_pixels(name + "&reached=1").bytes) << scheme;
+    }
+    EXPECT_EQ(spec_of("city.exr.drape?" + keys).find_attribute("anamorph:not_computed"), nullptr);
+    EXPECT_THAT(open_error("city.exr.drape?reached=2"), HasSubstr("reached=2: must be 0 or 1"));
+}
+
+TEST_F(Metadata, DepthsSayHowFarTheyAreOff) {
+    const auto off = [](const std::string& keys) {
+        return spec_of("city.exr.drape?surface=waves&size=40&output=depth" + keys)
+            .get_float_attribute("anamorph:max_depth_error", -1);
+    };
+    EXPECT_GT(off(""), 0);
+    EXPECT_LT(off("&tol=0.01"), off(""));
+    EXPECT_EQ(off("&scheme=oka-z"), -1);
+    EXPECT_EQ(spec_of("city.exr.drape?surface=waves&size=40").find_attribute("anamorph:max_depth_error"),
+              nullptr);
 }
 
 TEST_F(Metadata, AFormulaSaysHowMuchOfThePictureHasNoPoint) {

@@ -203,7 +203,29 @@ def check_blocks(rank, ranks):
     assert [k for k in range(4) if textures.GetBlock(k)] == list(meshes)
     for k, ends in meshes.items():
         assert texture_and_counts(textures.GetBlock(k)) == baked(strips(*ends), False, False), k
+    # Asked for a piece, a rank has its rows of each, whoever has the mesh, and the counts of all of them.
+    wholes = {k: texture_and_counts(textures.GetBlock(k)) for k in meshes}
+    texels = {k: vtk_to_numpy(textures.GetBlock(k).GetPointData().GetScalars()).reshape(40, 120, -1).copy() for k in meshes}
+    bake = bake_of(blocks)
+    bake.OcclusionOff()
+    bake.UpdatePiece(rank, ranks, 0)
+    parts = bake.GetOutputDataObject(0)
+    assert [k for k in range(4) if parts.GetBlock(k)] == list(meshes)
+    first, end = 40 * rank // ranks, 40 * (rank + 1) // ranks
+    for k in meshes:
+        part = parts.GetBlock(k)
+        assert part.GetExtent() == (0, 119, first, end - 1, 0, 0), part.GetExtent()
+        found = vtk_to_numpy(part.GetPointData().GetScalars()).reshape(-1, 120, texels[k].shape[2])
+        assert np.array_equal(found, texels[k][first:end]), (rank, k)
+        assert texture_and_counts(part)[1] == wholes[k][1], (rank, k)
+    # More pieces than rows: some have none of them.
+    bake.SetHeight(ranks - 1)
+    bake.UpdatePiece(rank, ranks, 0)
+    rows = [(k + 1) * (ranks - 1) // ranks - k * (ranks - 1) // ranks for k in range(ranks)]
+    assert 0 in rows and bake.GetOutputDataObject(0).GetBlock(0).GetNumberOfPoints() == 120 * rows[rank]
     # Another structure on each rank is an error on all.
+    bake = bake_of(blocks)
+    bake.OcclusionOff()
     blocks.SetNumberOfBlocks(4 + rank)
     assert errors_of(bake)
 

@@ -86,6 +86,9 @@ def a_piece_is_baked_of_the_whole_mesh():
         mesh, others = Source(lambda t: wall()), Source(lambda t: wall(-0.5, half=0.2))
         bake_of(mesh, picture(), others).UpdatePiece(piece, 2, 1)
         assert mesh.asked == others.asked == [(0, 0, 1)], (mesh.asked, others.asked)
+        shown = Source(lambda t: picture())
+        bake_of(wall(), shown).UpdatePiece(piece, 2, 0)
+        assert shown.asked == [(0, 0, 1)], shown.asked
 
 
 def hidden_cells_are_not_there():
@@ -141,6 +144,23 @@ def blocks_cast_shadows_together_and_are_baked_apart():
     for i, each in enumerate((left, right)):
         assert (pixels(out.GetPartition(i, i)) == baked(each, picture())).all()
     assert not pixels(out.GetPartition(2, 0)).any()
+    # Of a piece, its rows of each; more pieces than rows have none.
+    wholes = [pixels(out.GetPartition(i, i)).copy() for i in range(2)]
+    height = wholes[0].shape[0]
+    for pieces in (2, 3, height + 2):
+        rows = []
+        for piece in range(pieces):
+            bake = bake_of(collection, picture())
+            bake.UpdatePiece(piece, pieces, 0)
+            first, end = height * piece // pieces, height * (piece + 1) // pieces
+            part = bake.GetOutputDataObject(0)
+            for i, whole in enumerate(wholes):
+                assert part.GetPartition(i, i).GetNumberOfPoints() == (end - first) * whole.shape[1]
+                if first < end:
+                    assert part.GetPartition(i, i).GetExtent()[2:4] == (first, end - 1)
+                    assert (pixels(part.GetPartition(i, i)) == whole[first:end]).all(), (piece, pieces, i)
+            rows += range(first, end)
+        assert rows == list(range(height))
 
 
 def filters_behind_it_know_its_numbers():

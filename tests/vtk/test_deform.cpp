@@ -8,6 +8,7 @@
 #include <vtkAnamorphDeformationList.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCommand.h>
 #include <vtkDiskSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -347,6 +348,33 @@ TEST(VtkDeform, AllKindsOfMeshesAndArraysAgree) {
     const std::vector<double> of_whole = deformed(other, list);
     other->SetPoints(whole);
     EXPECT_EQ(deformed(other, list), of_whole);
+}
+
+TEST(VtkDeform, WarnsOfBumpsBetweenThePoints) {
+    // What a host's plane is made of by default: four points, at +-1/2.
+    vtkNew<vtkPlaneSource> plane;
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputConnection(plane->GetOutputPort());
+    Errors warnings(filter, vtkCommand::WarningEvent);
+    const auto warned = [&] {
+        warnings.clear();
+        filter->Modified();
+        filter->Update();
+        return warnings.text();
+    };
+    filter->AddDeformation(0, 0, 0.1, 0.1, 0, 0, 0.3);
+    EXPECT_THAT(warned(),
+                testing::HasSubstr("no points within the extents of deformations 1 (the first is 1)"));
+    filter->AddDeformation(-0.2, 0.1, 0.05, 0.2, 0, 0, 0.3);
+    filter->AddDeformation(-0.5, 0.5, 0.1, 0.1, 0, 0, 0.3);  // has a corner
+    filter->AddDeformation(1, 0, 0.1, 0.1, 0, 0, 0.3);       // lies beside the mesh
+    filter->AddDeformation(0, 0, 0.1, 0.1, 0, 0, 0);         // moves nothing
+    filter->AddDeformation(0, 0, 0.9, 0.9, 0, 0, 0.3);       // reaches the corners
+    EXPECT_THAT(warned(), testing::HasSubstr("of deformations 1, 2 (the first is 1)"));
+    plane->SetResolution(4, 4);
+    EXPECT_THAT(warned(), testing::HasSubstr("of deformations 2 (the first is 1)"));
+    plane->SetResolution(10, 10);
+    EXPECT_EQ(warned(), "");
 }
 
 TEST(VtkDeform, SharesWhatStaysAndLeavesTheInputAlone) {

@@ -638,6 +638,7 @@ struct vtkAnamorphDeform::Run {
     /// Says of a leaf what is known of its displacement. mesh: null where there are no points.
     void report(vtkPointSet* out, const DeformedMesh* mesh);
     void tell_folds(const DeformedMesh::Jacobian& least);
+    void tell_missed() const;
     void draw_overlay_of_meshes();
 };
 
@@ -772,6 +773,40 @@ void vtkAnamorphDeform::Run::deform_leaves() {
         report(out, mesh.get());
     }
     tell_folds(least);
+    tell_missed();
+}
+
+/// Warns of bumps that the mesh is around but has no point in: they lie between the points, where nothing moves, or hardly. Meshes of
+/// many points are not looked through.
+void vtkAnamorphDeform::Run::tell_missed() const {
+    constexpr double kMostTests = 1 << 22;
+    double points = 0;
+    for (const auto& mesh : filter.Meshes->meshes)
+        if (mesh) points += static_cast<double>(mesh->parameters().size());
+    if (points * static_cast<double>(list.size()) > kMostTests) return;
+    std::string missed;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const Deformation& bump = list[k];
+        if (!bump.enabled || bump.has_frame() || bump.vector == glm::dvec3(0.0)) continue;
+        bool met = false;
+        glm::dvec2 least(HUGE_VAL), most(-HUGE_VAL);
+        for (const auto& mesh : filter.Meshes->meshes) {
+            if (!mesh) continue;
+            for (const glm::dvec2& at : mesh->parameters()) {
+                const glm::dvec2 from = (at - bump.center) / bump.extent;
+                met = met || glm::dot(from, from) <= 1;
+                least = glm::min(least, from);
+                most = glm::max(most, from);
+            }
+        }
+        if (met || !(least.x < 0 && least.y < 0 && most.x > 0 && most.y > 0)) continue;
+        missed += (missed.empty() ? "" : ", ") + std::to_string(entries[k] + 1);
+    }
+    if (missed.empty()) return;
+    vtkWarningWithObjectMacro(
+        &filter, << "the mesh has no points within the extents of deformations " << missed
+                 << " (the first is 1), which lie between its points and show little or nothing: a finer "
+                    "mesh shows them, by a higher resolution of its source or from the filter Subdivide");
 }
 
 void vtkAnamorphDeform::Run::tell_folds(const DeformedMesh::Jacobian& least) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <string>
@@ -94,6 +95,23 @@ std::vector<int> on_any_rank(const std::vector<int>& own, vtkMultiProcessControl
     controller->AllReduce(own.data(), any.data(), count, vtkCommunicator::MAX_OP);
     return any;
 }
+
+/// The rows of every texture of composite data that the piece has which is asked for; where there are more pieces than rows, none.
+struct RowsOfPiece {
+    int first = 0, end;
+
+    RowsOfPiece(int height, vtkInformation* output) : end(height) {
+        using Pipeline = vtkStreamingDemandDrivenPipeline;
+        const int pieces = output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()),
+                  piece = output->Get(Pipeline::UPDATE_PIECE_NUMBER());
+        if (pieces < 2) return;
+        const auto begin = [&](int k) {
+            return static_cast<int>(std::int64_t{height} * std::clamp(k, 0, pieces) / pieces);
+        };
+        first = begin(piece);
+        end = begin(piece + 1);
+    }
+};
 
 void add_field_value(vtkDataObject* object, const char* name, std::int64_t value) {
     vtkNew<vtkDoubleArray> array;
@@ -387,7 +405,7 @@ void vtkAnamorphProjectionBake::Run::bake_to(vtkPolyData* of, vtkDataObject* oth
 }
 
 void vtkAnamorphProjectionBake::BakeBlocks(vtkDataObjectTree* meshes, vtkInformationVector** inputs,
-                                           vtkDataObjectTree* textures) {
+                                           vtkInformation* output, vtkDataObjectTree* textures) {
     textures->CopyStructure(meshes);
     const auto leaves = vtk::TakeSmartPointer(meshes->NewTreeIterator());
     leaves->SkipEmptyNodesOff();
@@ -397,7 +415,8 @@ void vtkAnamorphProjectionBake::BakeBlocks(vtkDataObjectTree* meshes, vtkInforma
     if (anamorph_vtk::distributed(this->Controller)) has_mesh = on_any_rank(has_mesh, this->Controller);
     anamorph_vtk::Execution execution(this);
     const auto count = static_cast<double>(has_mesh.size());
-    const int all[] = {0, this->Width - 1, 0, this->Height - 1, 0, 0};
+    const RowsOfPiece rows(this->Height, output);
+    const int extent[] = {0, this->Width - 1, rows.first, rows.end - 1, 0, 0};
     std::size_t k = 0;
     for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem(), ++k) {
         if (has_mesh[k] == 0) continue;
@@ -406,7 +425,7 @@ void vtkAnamorphProjectionBake::BakeBlocks(vtkDataObjectTree* meshes, vtkInforma
         const vtkNew<vtkImageData> texture;
         const auto at = static_cast<double>(k);
         Run run{*this, inputs[1], execution.stage(at / count, (at + 1) / count)};
-        run.bake_to(mesh, vtkDataObject::GetData(inputs[2]), all, texture);
+        run.bake_to(mesh, vtkDataObject::GetData(inputs[2]), extent, texture);
         textures->SetDataSet(leaves, texture);
     }
 }
@@ -506,6 +525,8 @@ int vtkAnamorphProjectionBake::RequestUpdateExtent(vtkInformation*, vtkInformati
     // All of every panorama, whatever is asked for.
     for (int i = 0; i < inputs[1]->GetNumberOfInformationObjects(); ++i) {
         vtkInformation* info = inputs[1]->GetInformationObject(i);
+        info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+        info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
         if (info->Has(Pipeline::WHOLE_EXTENT()))
             info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
     }
@@ -526,7 +547,7 @@ int vtkAnamorphProjectionBake::RequestData(vtkInformation*, vtkInformationVector
     vtkDataObject *input = vtkDataObject::GetData(inputs[0]), *output = vtkDataObject::GetData(info);
     const auto execute = [&] {
         if (auto* meshes = vtkDataObjectTree::SafeDownCast(input)) {
-            this->BakeBlocks(meshes, inputs, vtkDataObjectTree::SafeDownCast(output));
+            this->BakeBlocks(meshes, inputs, info, vtkDataObjectTree::SafeDownCast(output));
         } else {
             anamorph_vtk::Execution execution(this);
             Run run{*this, inputs[1], execution.stage(0, 1)};

@@ -17,7 +17,8 @@
  *
  * On several ranks, each has a part of the mesh. Where they are asked for parts of the texture that make up all of it, each rank holds
  * those rows alone, and of the mesh what reaches into them; where they are asked for more, each makes some rows, and gets the others'. What
- * casts shadows is held by every rank.
+ * casts shadows is held by every rank. Of composite data, a piece that is asked for is as many of the rows of every texture, the first piece those
+ * at the bottom.
  *
  * Field arrays: "anamorph:painted", the number of texels painted; "anamorph:unseen", of those of the mesh that no projector
  * throws anything on.
@@ -179,7 +180,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     struct Run;
 
     /// Bakes a texture for every mesh of composite data.
-    void BakeBlocks(vtkDataObjectTree* meshes, vtkInformationVector** inputs, vtkDataObjectTree* textures);
+    void BakeBlocks(vtkDataObjectTree* meshes, vtkInformationVector** inputs, vtkInformation* output,
+                    vtkDataObjectTree* textures);
 
     std::unique_ptr<Projectors> Poses;
     int Projection = 0, Width = 1024, Height = 1024;

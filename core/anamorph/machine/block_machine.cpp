@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <memory>
-#include <numeric>
+#include <optional>
 #include <string>
 
 #include "anamorph/error.h"
@@ -78,8 +78,11 @@ class BlockOnScreen {
         return !std::isfinite(m_b[0] + m_b[1] + m_b[2] + m_b[3]) ||
                !std::isfinite(m_first.x + m_first.y + m_last.x + m_last.y);
     }
-    PixelRange columns(const Size& screen) const { return {m_first.x, m_last.x, screen.width}; }
-    PixelRange rows(const Size& screen) const { return {m_first.y, m_last.y, screen.height}; }
+    /// The pixels of the least rectangle about it; empty() where there are none.
+    Box pixels(const Size& screen) const {
+        const PixelRange columns(m_first.x, m_last.x, screen.width), rows(m_first.y, m_last.y, screen.height);
+        return {columns.first, rows.first, columns.last + 1, rows.last + 1};
+    }
     double centre_depth() const { return m_centre.z; }
     double least_depth() const { return m_first.z; }
     double largest_depth() const { return m_last.z; }
@@ -270,11 +273,11 @@ class BlockAddresses {
     Point<double> m_low{}, m_high{};
 };
 
-/// The depths of pixels as the z-buffer holds them: whole numbers from the least to the largest depth of all blocks.
-class DepthBuffer {
+/// The depths that a z-buffer holds: whole numbers from the least to the largest depth of all blocks.
+class DepthScale {
   public:
-    DepthBuffer(const std::vector<BlockOnScreen>& blocks, int bits, std::size_t pixels)
-        : m_depths(pixels, std::uint64_t{1} << bits), m_largest(std::ldexp(1.0, bits) - 1) {
+    DepthScale(const std::vector<BlockOnScreen>& blocks, int bits)
+        : m_beyond(std::uint64_t{1} << bits), m_largest(std::ldexp(1.0, bits) - 1) {
         double far = -HUGE_VAL;
         for (const BlockOnScreen& block : blocks) {
             m_near = std::min(m_near, block.least_depth());
@@ -282,17 +285,15 @@ class DepthBuffer {
         }
         m_scale = far > m_near ? m_largest / (far - m_near) : 0;
     }
-    /// Is a depth at most the one that is held? It is held then.
-    bool take(std::size_t pixel, double depth) {
-        const auto whole = static_cast<std::uint64_t>(
+    std::uint64_t whole(double depth) const {
+        return static_cast<std::uint64_t>(
             std::clamp(std::nearbyint((depth - m_near) * m_scale), 0.0, m_largest));
-        if (whole > m_depths[pixel]) return false;
-        m_depths[pixel] = whole;
-        return true;
     }
+    /// Farther than all.
+    std::uint64_t beyond() const { return m_beyond; }
 
   private:
-    std::vector<std::uint64_t> m_depths;
+    std::uint64_t m_beyond;
     double m_near = HUGE_VAL, m_largest, m_scale;
 };
 
@@ -314,138 +315,311 @@ std::vector<std::size_t> far_to_near(const std::vector<BlockOnScreen>& blocks, i
     return order;
 }
 
-/// The address controller, and what the pixel processor shows.
+/// Squares of the screen, each of whole segments, and which blocks may be seen in each, in the order in which they are drawn.
+class SquareLists {
+  public:
+    SquareLists(const Size& screen, int segment)
+        : m_screen(screen),
+          m_side((kLeastSide + segment - 1) / segment * segment),
+          m_columns((screen.width + m_side - 1) / m_side) {
+        m_lists.resize(static_cast<std::size_t>(m_columns) *
+                       static_cast<std::size_t>((screen.height + m_side - 1) / m_side));
+    }
+    void add(std::size_t number, const BlockOnScreen& block) {
+        for_squares(block.pixels(m_screen), [&](std::size_t square) {
+            m_lists[square].push_back(static_cast<std::uint32_t>(number));
+        });
+    }
+    /// body(square) for all squares that have pixels of a box.
+    template <class Body>
+    void for_squares(const Box& box, const Body& body) const {
+        if (box.empty()) return;
+        for (int row = box.y0 / m_side; row <= (box.y1 - 1) / m_side; ++row)
+            for (int column = box.x0 / m_side; column <= (box.x1 - 1) / m_side; ++column)
+                body(static_cast<std::size_t>(row) * static_cast<std::size_t>(m_columns) +
+                     static_cast<std::size_t>(column));
+    }
+    std::size_t count() const { return m_lists.size(); }
+    const std::vector<std::uint32_t>& list(std::size_t square) const { return m_lists[square]; }
+    /// The pixels of a square.
+    Box box(std::size_t square) const {
+        const int x = static_cast<int>(square % static_cast<std::size_t>(m_columns)) * m_side,
+                  y = static_cast<int>(square / static_cast<std::size_t>(m_columns)) * m_side;
+        return {x, y, std::min(x + m_side, m_screen.width), std::min(y + m_side, m_screen.height)};
+    }
+
+  private:
+    static constexpr int kLeastSide = 64;
+
+    Size m_screen;
+    int m_side, m_columns;
+    std::vector<std::vector<std::uint32_t>> m_lists;
+};
+
+/// The address controller, and what the pixel processor shows, of a part of the screen.
 class Drawer {
   public:
-    Drawer(const BlockMachine& machine, const std::vector<BlockOnScreen>& blocks, BlockFrame& frame)
-        : m_machine(machine), m_blocks(blocks), m_frame(frame) {
-        const std::size_t pixels = frame.block.size();
-        if (machine.hidden == Hiding::z_buffer)
-            m_depths = std::make_unique<DepthBuffer>(blocks, machine.depth_bits, pixels);
+    /// `frame`: has all pixels of `part`, which lies in `square`, one of whole segments.
+    Drawer(const BlockMachine& machine, const Size& screen, const std::vector<BlockOnScreen>& blocks,
+           const DepthScale* depths, BlockFrame& frame, const Box& square, const Box& part)
+        : m_machine(machine),
+          m_screen(screen),
+          m_blocks(blocks),
+          m_scale(depths),
+          m_frame(frame),
+          m_square(square),
+          m_part(part) {
+        const std::size_t pixels =
+            static_cast<std::size_t>(part.width()) * static_cast<std::size_t>(part.height());
+        if (m_scale)
+            m_depths.assign(pixels, m_scale->beyond());
         else
             m_nearest.assign(pixels, HUGE_VAL);
     }
 
-    void draw() {
-        std::vector<std::size_t> order(m_blocks.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        if (m_machine.hidden == Hiding::sort) order = far_to_near(m_blocks, m_machine.buckets);
-        for (const std::size_t number : order) draw(number);
-        if (m_depths) return;
-        for (std::size_t k = 0; k < m_frame.block.size(); ++k)
-            if (m_frame.block[k] != BlockFrame::kNone &&
-                m_blocks[static_cast<std::size_t>(m_frame.block[k])].centre_depth() > m_nearest[k])
-                ++m_frame.counts.misordered;
+    void draw(std::size_t number) {
+        const BlockOnScreen& block = m_blocks[number];
+        // All segments that it may reach into: by rounding it may have pixels beside its parallelogram.
+        const Box seen = intersection(block.pixels(m_screen), m_square);
+        if (seen.empty()) return;
+        const int side = m_machine.segment;
+        const Box segments{seen.x0 / side * side, seen.y0 / side * side, (seen.x1 + side - 1) / side * side,
+                           (seen.y1 + side - 1) / side * side};
+        if (intersection(segments, m_part).empty()) return;
+        BlockAddresses addresses(m_machine, block, m_screen);
+        for (int y = segments.y0; y < segments.y1; y += side)
+            for (int x = segments.x0; x < segments.x1; x += side) {
+                const Box segment{x, y, std::min(x + side, m_screen.width),
+                                  std::min(y + side, m_screen.height)};
+                if (!intersection(segment, m_part).empty() && addresses.enter(segment))
+                    draw_segment(number, addresses, segment);
+            }
+    }
+    /// What was counted, where the part is one of whole segments.
+    const BlockCounts& count() {
+        for (int y = m_part.y0; y < m_part.y1; ++y)
+            for (int x = m_part.x0; x < m_part.x1; ++x) {
+                const std::size_t at = m_frame.index(x, y);
+                m_counts.saturated += m_frame.beyond[at];
+                if (!m_scale && m_frame.block[at] != BlockFrame::kNone)
+                    m_counts.misordered +=
+                        m_blocks[static_cast<std::size_t>(m_frame.block[at])].centre_depth() >
+                        m_nearest[own_index(x, y)];
+            }
+        return m_counts;
     }
 
   private:
-    void draw(std::size_t number) {
-        const BlockOnScreen& block = m_blocks[number];
-        BlockAddresses addresses(m_machine, block, m_frame.screen);
-        const PixelRange columns = block.columns(m_frame.screen), rows = block.rows(m_frame.screen);
-        if (columns.last < columns.first || rows.last < rows.first) return;
-        const int side = m_machine.segment;
-        for (int y = rows.first / side * side; y <= rows.last; y += side)
-            for (int x = columns.first / side * side; x <= columns.last; x += side) {
-                const Box segment{x, y, std::min(x + side, m_frame.screen.width),
-                                  std::min(y + side, m_frame.screen.height)};
-                if (addresses.enter(segment)) draw_segment(number, addresses, segment);
-            }
-    }
-
     void draw_segment(std::size_t number, const BlockAddresses& addresses, const Box& segment) {
         std::int64_t drawn = 0;
-        for (int y = segment.y0; y < segment.y1; ++y)
-            for (int x = segment.x0; x < segment.x1; ++x) {
+        const Box seen = intersection(segment, m_part);
+        for (int y = seen.y0; y < seen.y1; ++y)
+            for (int x = seen.x0; x < seen.x1; ++x) {
                 bool beyond = false;
                 Point<double> at;
                 if (!addresses.holds(x, y, at, beyond)) continue;
                 ++drawn;
-                show(number, m_frame.index(x, y), at, beyond);
+                show(number, x, y, at, beyond);
             }
-        BlockCounts& counts = m_frame.counts;
-        ++counts.segments;
-        counts.addressed += std::int64_t{segment.width()} * segment.height();
-        counts.pixels += drawn;
+        ++m_counts.segments;
+        m_counts.addressed += std::int64_t{segment.width()} * segment.height();
+        m_counts.pixels += drawn;
         const int at_once = m_machine.addresses == Addressing::segments ? m_machine.pixel_units : 1;
-        counts.pixel_cycles += (drawn + at_once - 1) / at_once;
+        m_counts.pixel_cycles += (drawn + at_once - 1) / at_once;
     }
 
-    void show(std::size_t number, std::size_t pixel, const Point<double>& at, bool beyond) {
+    void show(std::size_t number, int x, int y, const Point<double>& at, bool beyond) {
         const BlockOnScreen& block = m_blocks[number];
-        if (m_depths && !m_depths->take(pixel, block.point(at.x, at.y).z)) return;
-        if (!m_depths) m_nearest[pixel] = std::min(m_nearest[pixel], block.centre_depth());
+        const std::size_t own = own_index(x, y);
+        if (m_scale) {
+            const std::uint64_t depth = m_scale->whole(block.point(at.x, at.y).z);
+            if (depth > m_depths[own]) return;
+            m_depths[own] = depth;
+        } else {
+            m_nearest[own] = std::min(m_nearest[own], block.centre_depth());
+        }
+        const std::size_t pixel = m_frame.index(x, y);
         m_frame.addresses[pixel] = at;
         m_frame.block[pixel] = static_cast<std::int32_t>(number);
-        m_frame.beyond[pixel] = beyond;
+        m_frame.beyond[pixel] = beyond ? 1 : 0;
+    }
+    std::size_t own_index(int x, int y) const {
+        return static_cast<std::size_t>(y - m_part.y0) * static_cast<std::size_t>(m_part.width()) +
+               static_cast<std::size_t>(x - m_part.x0);
     }
 
     const BlockMachine& m_machine;
+    Size m_screen;
     const std::vector<BlockOnScreen>& m_blocks;
+    const DepthScale* m_scale;
     BlockFrame& m_frame;
-    std::unique_ptr<DepthBuffer> m_depths;
+    Box m_square, m_part;
+    BlockCounts m_counts;
+    std::vector<std::uint64_t> m_depths;
     std::vector<double> m_nearest;  ///< of the centres of the blocks that were drawn at a pixel
 };
 
-/// May a block cover a pixel?
-bool is_on_screen(const BlockOnScreen& block, const Size& screen) {
-    if (block.is_flat()) return false;
-    const PixelRange columns = block.columns(screen), rows = block.rows(screen);
-    return columns.first <= columns.last && rows.first <= rows.last;
+/// How many pixels of `part` lie in one of some blocks but show nothing.
+std::int64_t cracks_in(const Box& part, const std::vector<BlockOnScreen>& blocks,
+                       const std::vector<std::uint32_t>& list, const Size& screen, const BlockFrame& frame) {
+    std::vector<bool> cracked(static_cast<std::size_t>(part.width()) *
+                              static_cast<std::size_t>(part.height()));
+    for (const std::uint32_t number : list) {
+        const BlockOnScreen& block = blocks[number];
+        const Box seen = intersection(block.pixels(screen), part);
+        for (int y = seen.y0; y < seen.y1; ++y)
+            for (int x = seen.x0; x < seen.x1; ++x)
+                if (frame.block[frame.index(x, y)] == BlockFrame::kNone &&
+                    block.holds(block.texel(x, y, NoRounding{}, NoRounding{})))
+                    cracked[static_cast<std::size_t>(y - part.y0) * static_cast<std::size_t>(part.width()) +
+                            static_cast<std::size_t>(x - part.x0)] = true;
+    }
+    return std::count(cracked.begin(), cracked.end(), true);
 }
 
-/// Marks the pixels that lie in a block.
-void mark(const BlockOnScreen& block, const BlockFrame& frame, std::vector<bool>& marks) {
-    if (block.is_flat()) return;
-    const PixelRange columns = block.columns(frame.screen), rows = block.rows(frame.screen);
-    for (int y = rows.first; y <= rows.last; ++y)
-        for (int x = columns.first; x <= columns.last; ++x)
-            if (block.holds(block.texel(x, y, NoRounding{}, NoRounding{}))) marks[frame.index(x, y)] = true;
+BlockFrame empty_frame(const Box& box) {
+    BlockFrame frame;
+    frame.box = box;
+    const std::size_t pixels = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
+    frame.addresses.resize(pixels);
+    frame.beyond.resize(pixels);
+    frame.block.resize(pixels, BlockFrame::kNone);
+    return frame;
+}
+
+BlockCounts& operator+=(BlockCounts& sum, const BlockCounts& more) {
+    for (const auto count : {&BlockCounts::blocks, &BlockCounts::segments, &BlockCounts::pixels,
+                             &BlockCounts::saturated, &BlockCounts::addressed, &BlockCounts::pixel_cycles,
+                             &BlockCounts::cracks, &BlockCounts::misordered, &BlockCounts::left_out})
+        sum.*count += more.*count;
+    return sum;
 }
 
 }  // namespace
 
-BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedSurface& surface,
-                             const surface::Camera& camera, const Size& picture) {
-    const surface::OkaBlocks cut{machine.block, machine.overlap, false};
-    const Size count = surface::oka_block_count(picture, cut);
-    BlockFrame frame;
-    frame.screen = camera.screen();
-    if (double(frame.screen.width) * frame.screen.height > kMostPixels)
-        throw Error("machine: a picture of " + std::to_string(frame.screen.width) + "x" +
-                    std::to_string(frame.screen.height) + " does not fit its memory: must have at most " +
-                    std::to_string(kMostPixels) + " pixels");
-    const std::size_t pixels =
-        static_cast<std::size_t>(frame.screen.width) * static_cast<std::size_t>(frame.screen.height);
-    frame.addresses.resize(pixels);
-    frame.beyond.resize(pixels);
-    frame.block.resize(pixels, BlockFrame::kNone);
-    std::vector<bool> covered(pixels);
+struct MachineBlocks::Parts {
+    BlockMachine machine;
+    std::shared_ptr<const surface::DrapedSurface> surface;
+    surface::Camera camera;
+    Size picture;
+    surface::OkaBlocks cut;
+    Size count;
+    std::int64_t made = 0;
     std::vector<BlockOnScreen> blocks;
-    const Rounding coordinate{machine.coordinates}, coefficient{machine.coefficients};
-    for (int j = 0; j < count.height; ++j)
-        for (int i = 0; i < count.width; ++i) {
-            surface::OkaBlock block;
-            const bool made = surface::oka_block(surface, camera, picture, cut, i, j, block);
-            if (!made ||
-                !is_on_screen({block, picture, frame.screen, machine.block, NoRounding{}, NoRounding{}},
-                              frame.screen))
-                frame.counts.left_out += surface::oka_block_is_cut(surface, camera, picture, cut, i, j);
-            if (!made) continue;
-            ++frame.counts.blocks;
-            mark({block, picture, frame.screen, machine.block, NoRounding{}, NoRounding{}}, frame, covered);
-            const BlockOnScreen on_screen(block, picture, frame.screen, machine.block, coordinate,
-                                          coefficient);
-            if (on_screen.is_flat()) continue;
-            const double(&b)[4] = on_screen.inverse();
-            frame.steps.push_back({b[0], b[2], b[1], b[3]});
-            frame.centres.push_back({block.u * picture.width, block.v * picture.height});
-            blocks.push_back(on_screen);
+    std::vector<Jacobian> steps;
+    std::vector<Point<double>> centres;
+    std::optional<DepthScale> depths;
+    SquareLists squares;
+
+    Parts(const BlockMachine& of, std::shared_ptr<const surface::DrapedSurface> on,
+          const surface::Camera& seen_by, const Size& size)
+        : machine(of),
+          surface(std::move(on)),
+          camera(seen_by),
+          picture(size),
+          cut{machine.block, machine.overlap, false},
+          count(surface::oka_block_count(picture, cut)),
+          squares(screen(), machine.segment) {
+        const Rounding coordinate{machine.coordinates}, coefficient{machine.coefficients};
+        for_blocks([&](int, int, const surface::OkaBlock* block) {
+            if (!block) return;
+            ++made;
+            const BlockOnScreen placed(*block, picture, screen(), machine.block, coordinate, coefficient);
+            if (placed.is_flat()) return;
+            const double(&b)[4] = placed.inverse();
+            steps.push_back({b[0], b[2], b[1], b[3]});
+            centres.push_back({block->u * picture.width, block->v * picture.height});
+            blocks.push_back(placed);
+        });
+        if (machine.hidden == Hiding::z_buffer) {
+            depths.emplace(blocks, machine.depth_bits);
+            for (std::size_t k = 0; k < blocks.size(); ++k) squares.add(k, blocks[k]);
+        } else {
+            for (const std::size_t k : far_to_near(blocks, machine.buckets)) squares.add(k, blocks[k]);
         }
-    Drawer(machine, blocks, frame).draw();
-    frame.counts.saturated = std::count(frame.beyond.begin(), frame.beyond.end(), true);
-    for (std::size_t k = 0; k < pixels; ++k)
-        if (covered[k] && frame.block[k] == BlockFrame::kNone) ++frame.counts.cracks;
+    }
+
+    const Size& screen() const { return camera.screen(); }
+    /// body(i, j, block) for all blocks, null where there is no map of one.
+    template <class Body>
+    void for_blocks(const Body& body) const {
+        for (int j = 0; j < count.height; ++j)
+            for (int i = 0; i < count.width; ++i) {
+                surface::OkaBlock block;
+                const bool has_map = surface::oka_block(*surface, camera, picture, cut, i, j, block);
+                body(i, j, has_map ? &block : nullptr);
+            }
+    }
+    /// Draws the pixels of a square that lie in `box`.
+    Drawer draw(std::size_t square, const Box& box, BlockFrame& frame) const {
+        const Box all = squares.box(square);
+        Drawer drawer(machine, screen(), blocks, depths ? &*depths : nullptr, frame, all,
+                      intersection(all, box));
+        for (const std::uint32_t number : squares.list(square)) drawer.draw(number);
+        return drawer;
+    }
+};
+
+MachineBlocks::MachineBlocks(const BlockMachine& machine,
+                             std::shared_ptr<const surface::DrapedSurface> surface,
+                             const surface::Camera& camera, const Size& picture) {
+    const Size& screen = camera.screen();
+    if (double(screen.width) * screen.height > kMostPixels)
+        throw Error("machine: a picture of " + std::to_string(screen.width) + "x" +
+                    std::to_string(screen.height) + " does not fit its memory: must have at most " +
+                    std::to_string(kMostPixels) + " pixels");
+    m_parts = std::make_unique<Parts>(machine, std::move(surface), camera, picture);
+}
+
+MachineBlocks::~MachineBlocks() = default;
+
+std::int64_t MachineBlocks::made() const {
+    return m_parts->made;
+}
+
+const std::vector<Jacobian>& MachineBlocks::steps() const {
+    return m_parts->steps;
+}
+
+const std::vector<Point<double>>& MachineBlocks::centres() const {
+    return m_parts->centres;
+}
+
+BlockFrame MachineBlocks::draw(const Box& box) const {
+    BlockFrame frame = empty_frame(box);
+    m_parts->squares.for_squares(box, [&](std::size_t square) { m_parts->draw(square, box, frame); });
+    return frame;
+}
+
+BlockFrame MachineBlocks::draw_all(const ParallelFor& parallel_for) const {
+    const Parts& parts = *m_parts;
+    const Size& screen = parts.screen();
+    const Box whole{0, 0, screen.width, screen.height};
+    BlockFrame frame = empty_frame(whole);
+    frame.counts.blocks = parts.made;
+    // Where they would be seen but for rounding.
+    std::vector<BlockOnScreen> unrounded;
+    SquareLists squares(screen, parts.machine.segment);
+    parts.for_blocks([&](int i, int j, const surface::OkaBlock* block) {
+        if (block) {
+            const BlockOnScreen placed(*block, parts.picture, screen, parts.machine.block, NoRounding{},
+                                       NoRounding{});
+            if (!placed.is_flat() && !placed.pixels(screen).empty()) {
+                squares.add(unrounded.size(), placed);
+                unrounded.push_back(placed);
+                return;
+            }
+        }
+        frame.counts.left_out +=
+            surface::oka_block_is_cut(*parts.surface, parts.camera, parts.picture, parts.cut, i, j);
+    });
+    std::vector<BlockCounts> counts(parts.squares.count());
+    parallel_for(static_cast<std::int64_t>(counts.size()), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        counts[k] = parts.draw(k, whole, frame).count();
+        counts[k].cracks = cracks_in(squares.box(k), unrounded, squares.list(k), screen, frame);
+    });
+    for (const BlockCounts& of_square : counts) frame.counts += of_square;
     return frame;
 }
 

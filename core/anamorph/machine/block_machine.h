@@ -12,11 +12,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "anamorph/geometry/box.h"
 #include "anamorph/machine/number_format.h"
+#include "anamorph/parallel_for.h"
 #include "anamorph/parameter/number_row.h"
 #include "anamorph/surface/oka.h"
 
@@ -110,27 +112,50 @@ struct BlockCounts {
         0;  ///< blocks that may be in view where no linear map shows them (oka_block_is_cut)
 };
 
-/// A frame as the machine draws it: for each pixel of the screen, row by row, the block that was drawn last,
+/// A part of a frame as the machine draws it: for each pixel of a box of the screen, row by row, the block that was drawn last,
 /// and its address there, in texels.
 struct BlockFrame {
     static constexpr std::int32_t kNone = -1;
 
     BlockCounts counts;
-    Size screen;
+    Box box;
     std::vector<std::int32_t> block;  ///< kNone where none was drawn
     std::vector<Point<double>> addresses;
-    std::vector<bool> beyond;            ///< the address was beyond the range, and saturated
-    std::vector<Jacobian> steps;         ///< derivatives of the blocks' maps, in the processors' numbers
-    std::vector<Point<double>> centres;  ///< of the blocks, in texels
+    std::vector<std::uint8_t> beyond;  ///< 1 where the address was beyond the range, and saturated
 
     std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +
-               static_cast<std::size_t>(x);
+        return static_cast<std::size_t>(y - box.y0) * static_cast<std::size_t>(box.width()) +
+               static_cast<std::size_t>(x - box.x0);
     }
 };
 
-/// Draws the blocks, one over the other as the machine hides them. Throws Error where there are more than four million blocks.
-BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedSurface& surface,
-                             const surface::Camera& camera, const Size& picture);
+/// The blocks of a picture as the processors have made them, ready to be drawn one over the other as the machine hides them. A
+/// pixel's address is a sum of products, whatever else is drawn, so that each part of the screen can be drawn by itself.
+class MachineBlocks {
+  public:
+    /// Makes the blocks. Throws Error where there are more than four million of them, or the screen does not fit the memory.
+    MachineBlocks(const BlockMachine& machine, std::shared_ptr<const surface::DrapedSurface> surface,
+                  const surface::Camera& camera, const Size& picture);
+    ~MachineBlocks();
+    MachineBlocks(const MachineBlocks&) = delete;
+    MachineBlocks& operator=(const MachineBlocks&) = delete;
+
+    /// Draws a box of the screen, and counts nothing.
+    BlockFrame draw(const Box& box) const;
+    /// Draws the screen, and counts.
+    BlockFrame draw_all(const ParallelFor& parallel_for) const;
+
+    /// The number of blocks that the processors make a map for.
+    std::int64_t made() const;
+    /// The derivatives of the maps of the blocks that have one, in the processors' numbers.
+    const std::vector<Jacobian>& steps() const;
+    /// Their centres, in texels.
+    const std::vector<Point<double>>& centres() const;
+
+  private:
+    struct Parts;
+
+    std::unique_ptr<const Parts> m_parts;
+};
 
 }  // namespace anamorph::machine

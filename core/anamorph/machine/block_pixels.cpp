@@ -117,26 +117,26 @@ bool BlockPixels::draw(const Source* source, const Box& box, const ImageView& vi
         if (!(sums = source->summed_areas())) sums = lent.emplace(*source).summed_areas();
         if (!sums) return false;
     }
-    const BlockFrame& frame = m_map->frame();
     const Box whole{0, 0, m_map->width(), m_map->height()};
     if (!(intersection(box, whole) == box)) canvas.fill(box, 0);
     std::atomic<bool> ok{true};
     for_each_square(intersection(box, whole), parallel_for, [&](const Box& square) {
         Reader reader(*this, *source, sums);
+        const auto frame = m_map->frame_of(square);
         const int channels = source->channels();
         std::vector<float> row(static_cast<std::size_t>(square.width() * channels + 16));
         for (int y = square.y0; y < square.y1; ++y) {
             std::fill(row.begin(), row.end(), 0.0f);
             for (int x = square.x0; x < square.x1; ++x) {
                 float* const pixel = row.data() + std::ptrdiff_t{x - square.x0} * channels;
-                const std::size_t at = frame.index(x, y);
-                if (frame.block[at] == BlockFrame::kNone) continue;
-                if (!reader.read(frame.addresses[at], frame.steps[static_cast<std::size_t>(frame.block[at])],
+                const std::size_t at = frame->index(x, y);
+                const std::int32_t block = frame->block[at];
+                if (block == BlockFrame::kNone) continue;
+                const Point<double>& address = frame->addresses[at];
+                if (!reader.read(address, m_map->blocks_of_machine().steps()[static_cast<std::size_t>(block)],
                                  pixel))
                     ok = false;
-                if (m_shading)
-                    add_light(m_shading->at(frame.block[at], frame.addresses[at]), pixel, channels, m_alpha,
-                              true);
+                if (m_shading) add_light(m_shading->at(block, address), pixel, channels, m_alpha, true);
                 if (source->unassociated_alpha() >= 0)
                     unassociate_alpha(pixel, channels, source->unassociated_alpha());
             }

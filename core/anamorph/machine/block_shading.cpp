@@ -11,18 +11,30 @@ using surface::DrapeShading;
 using surface::Light;
 using surface::LitPoint;
 
-BlockShading::BlockShading(const BlockMachine& machine, const surface::DrapedSurface& surface,
-                           const surface::Camera& camera, const Size& picture, const BlockFrame& frame,
+BlockShading::BlockShading(const BlockMachine& machine, std::shared_ptr<const surface::DrapedSurface> surface,
+                           const surface::Camera& camera, const Size& picture, const MachineBlocks& blocks,
                            const surface::DrapeLighting& lighting)
-    : m_lighting(lighting), m_unit(std::ldexp(1.0, -machine.light_bits)), m_centres(frame.centres) {
-    const Rounding rounded{machine.coordinates};
-    const double side_u = std::min(machine.block, double(picture.width)),
-                 side_v = std::min(machine.block, double(picture.height));
+    : m_coordinates(machine.coordinates),
+      m_surface(std::move(surface)),
+      m_camera(camera),
+      m_picture(picture),
+      m_centres(&blocks.centres()),
+      m_lighting(lighting),
+      m_side(machine.block),
+      m_unit(std::ldexp(1.0, -machine.light_bits)),
+      m_numbers(m_centres->size() * numbers()),
+      m_lit(std::make_unique<OnceEach>(m_centres->size())) {}
+
+/// Finds the light of blocks.
+void BlockShading::light_blocks(std::size_t first, std::size_t end) const {
+    const Rounding rounded{m_coordinates};
+    const double side_u = std::min(m_side, double(m_picture.width)),
+                 side_v = std::min(m_side, double(m_picture.height));
     const auto lit = [&](double u, double v) {
-        return lit_point(surface, camera, u / picture.width, v / picture.height);
+        return lit_point(*m_surface, m_camera, u / m_picture.width, v / m_picture.height);
     };
-    m_numbers.reserve(m_centres.size() * numbers());
-    for (const Point<double>& c : m_centres) {
+    for (std::size_t i = first; i < end; ++i) {
+        const Point<double>& c = (*m_centres)[i];
         const LitPoint centre = lit(c.x, c.y);
         const auto beside = [&](double u, double v) {
             LitPoint at = lit(u, v);
@@ -36,8 +48,8 @@ BlockShading::BlockShading(const BlockMachine& machine, const surface::DrapedSur
             return rounded(rounded(rounded(after) - rounded(before)) / rounded(2 * side));
         };
         for (std::size_t k = 0; k < numbers(); ++k)
-            m_numbers.push_back(
-                {rounded(here[k]), gain(left[k], right[k], side_u), gain(above[k], below[k], side_v)});
+            m_numbers[i * numbers() + k] = {rounded(here[k]), gain(left[k], right[k], side_u),
+                                            gain(above[k], below[k], side_v)};
     }
 }
 
@@ -49,14 +61,16 @@ std::array<double, BlockShading::kMostNumbers> BlockShading::numbers_at(const Li
     return {point.normal.x, point.normal.y, point.normal.z, point.ray.x, point.ray.y, point.ray.z};
 }
 
-double BlockShading::value(std::int32_t block, std::size_t number, const Point<double>& address) const {
-    const auto at = static_cast<std::size_t>(block);
-    const Linear& l = m_numbers[at * numbers() + number];
-    return l.centre + (address.x - m_centres[at].x) * l.by_u + (address.y - m_centres[at].y) * l.by_v;
+double BlockShading::value(std::size_t block, std::size_t number, const Point<double>& address) const {
+    const Linear& l = m_numbers[block * numbers() + number];
+    const Point<double>& centre = (*m_centres)[block];
+    return l.centre + (address.x - centre.x) * l.by_u + (address.y - centre.y) * l.by_v;
 }
 
 Light BlockShading::at(std::int32_t block, const Point<double>& address) const {
-    const auto number = [&](std::size_t k) { return value(block, k, address); };
+    const auto at = static_cast<std::size_t>(block);
+    m_lit->ask(at, [&](std::size_t first, std::size_t end) { light_blocks(first, end); });
+    const auto number = [&](std::size_t k) { return value(at, k, address); };
     const auto direction = [&](std::size_t k) {
         const glm::dvec3 to(number(k), number(k + 1), number(k + 2));
         const double length = glm::length(to);

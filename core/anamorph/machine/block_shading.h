@@ -4,10 +4,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "anamorph/machine/block_machine.h"
 #include "anamorph/machine/counted.h"
+#include "anamorph/once_each.h"
 #include "anamorph/surface/lighting.h"
 
 namespace anamorph::machine {
@@ -19,12 +21,13 @@ namespace anamorph::machine {
 /// away from the centre's is turned round.
 class BlockShading {
   public:
-    /// `frame`: of the same machine, surface, camera and picture. Keeps none of them. `lighting`: some shading.
-    BlockShading(const BlockMachine& machine, const surface::DrapedSurface& surface,
-                 const surface::Camera& camera, const Size& picture, const BlockFrame& frame,
+    /// `blocks`: of the same machine, surface, camera and picture; they outlive this. `lighting`: some shading.
+    BlockShading(const BlockMachine& machine, std::shared_ptr<const surface::DrapedSurface> surface,
+                 const surface::Camera& camera, const Size& picture, const MachineBlocks& blocks,
                  const surface::DrapeLighting& lighting);
 
-    /// What light makes of a pixel at an address of a block.
+    /// What light makes of a pixel at an address of a block. The block's light is found when it is first asked for, and that of
+    /// its neighbours in the list. Thread safe.
     surface::Light at(std::int32_t block, const Point<double>& address) const;
 
   private:
@@ -38,13 +41,19 @@ class BlockShading {
         return m_lighting.shading == surface::DrapeShading::gouraud ? 2 : kMostNumbers;
     }
     static constexpr std::size_t kMostNumbers = 6;
+    void light_blocks(std::size_t first, std::size_t end) const;
     std::array<double, kMostNumbers> numbers_at(const surface::LitPoint& point) const;
-    double value(std::int32_t block, std::size_t number, const Point<double>& address) const;
+    double value(std::size_t block, std::size_t number, const Point<double>& address) const;
 
+    NumberFormat m_coordinates;
+    std::shared_ptr<const surface::DrapedSurface> m_surface;
+    surface::Camera m_camera;
+    Size m_picture;
+    const std::vector<Point<double>>* m_centres;
     surface::DrapeLighting m_lighting;
-    double m_unit;
-    std::vector<Point<double>> m_centres;
-    std::vector<Linear> m_numbers;
+    double m_side, m_unit;
+    mutable std::vector<Linear> m_numbers;
+    std::unique_ptr<OnceEach> m_lit;
 };
 
 /// What the processors do for the light of a block beside its points: a normal by the product of what they gain in space, 12 products, a

@@ -21,16 +21,18 @@ class SolvedByBlocks final : public SolvedPicture {
     explicit SolvedByBlocks(const BlockDrape& drape)
         : m_map(std::make_shared<machine::BlockMachineMap>(drape.machine, drape.surface, drape.camera,
                                                            drape.source)),
-          m_schedule(machine::schedule_of(drape.machine, m_map->frame().counts, cost_of(drape), drape.source,
-                                          drape.shown)) {
+          m_machine(drape.machine),
+          m_cost(cost_of(drape)),
+          m_source(drape.source),
+          m_shown(drape.shown) {
         const surface::DrapeOptions& options = drape.options;
         const Chart flat(Projection::rectilinear, drape.source.width, drape.source.height);
         if (options.output == Output::color && options.own == surface::DrapeOutput::shared)
             m_pixels.emplace(m_map, drape.machine, Border(flat, options.wrap), options.filter);
         if (m_pixels && options.lighting.shading != surface::DrapeShading::none)
-            m_pixels->light(
-                {drape.machine, *drape.surface, drape.camera, drape.source, m_map->frame(), options.lighting},
-                options.alpha);
+            m_pixels->light({drape.machine, drape.surface, drape.camera, drape.source,
+                             m_map->blocks_of_machine(), options.lighting},
+                            options.alpha);
         m_picture = picture_through(m_map, Border(flat, options.wrap), options.filter, options.output);
         m_picture.data = drape.data;
         if (options.output == Output::error)
@@ -40,8 +42,14 @@ class SolvedByBlocks final : public SolvedPicture {
             };
     }
 
+    bool reached_by_drawing() const override { return true; }
+    Attributes known() const override {
+        return {{"anamorph:patches", static_cast<int>(m_map->blocks_of_machine().made())}};
+    }
     Attributes reached(const ParallelFor& parallel_for) const override {
-        const machine::BlockCounts& counts = m_schedule.counts;
+        const machine::BlockCounts& counts = m_map->frame(parallel_for).counts;
+        const machine::MachineSchedule schedule =
+            machine::schedule_of(m_machine, counts, m_cost, m_source, m_shown);
         return {{"anamorph:max_error", m_picture.reached(parallel_for).max_error},
                 {"anamorph:exact_fraction", 0.0},
                 {"anamorph:patches", static_cast<int>(counts.blocks)},
@@ -49,9 +57,9 @@ class SolvedByBlocks final : public SolvedPicture {
                 {"anamorph:cracks", static_cast<double>(counts.cracks)},
                 {"anamorph:misordered_pixels", static_cast<double>(counts.misordered)},
                 {"anamorph:blocks_left_out", static_cast<int>(counts.left_out)},
-                {"anamorph:frame_ms", m_schedule.frame_ms()},
-                {"anamorph:shown_ms", m_schedule.shown_ms()},
-                {"anamorph:bottleneck", m_schedule.bottleneck().name}};
+                {"anamorph:frame_ms", schedule.frame_ms()},
+                {"anamorph:shown_ms", schedule.shown_ms()},
+                {"anamorph:bottleneck", schedule.bottleneck().name}};
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
@@ -81,7 +89,9 @@ class SolvedByBlocks final : public SolvedPicture {
     }
 
     std::shared_ptr<const machine::BlockMachineMap> m_map;
-    machine::MachineSchedule m_schedule;
+    machine::BlockMachine m_machine;
+    machine::SurfaceCost m_cost;
+    Size m_source, m_shown;
     std::optional<machine::BlockPixels> m_pixels;  ///< of colours
     Picture m_picture;
 };

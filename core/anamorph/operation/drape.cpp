@@ -58,6 +58,7 @@ ParameterTable view_rows() {
         tile(),
         mip(),
         hash(),
+        reached("of schemes other than auto"),
     };
 }
 
@@ -376,6 +377,8 @@ struct DrapeParts {
     /// those of what is behind, if there is anything.
     std::vector<int> data = {};
     bool counts_holes = false;
+    bool reached_by_drawing = false;
+    bool shows_depth = false;
     std::optional<surface::Drape> bare = {}, behind = {}, seen = {};
 };
 
@@ -392,6 +395,8 @@ DrapeParts parts_of(const DrapeRequest& request, const ParameterValues& values, 
     const bool shares_edges =
         options.scheme == surface::DrapeScheme::automatic || options.scheme == surface::DrapeScheme::exact;
     parts.counts_holes = shares_edges || values.toggle("holes");
+    parts.shows_depth = options.own == surface::DrapeOutput::depth;
+    parts.reached_by_drawing = options.scheme != surface::DrapeScheme::automatic && !values.toggle("holes");
     if (adds_alpha) parts.coverage.emplace(value_of(surface::DrapeOutput::coverage));
     const DataChannels data = request.data(values);
     if (pixels_of(options) != PixelKind::color || data.channels.empty()) return parts;
@@ -417,15 +422,23 @@ class SolvedDrape final : public SolvedPicture {
     SolvedDrape(DrapeParts parts, bool has_backdrop, bool has_back)
         : m_parts(std::move(parts)), m_has_backdrop(has_backdrop), m_has_back(has_back) {}
 
+    bool reached_by_drawing() const override { return m_parts.reached_by_drawing; }
+    Attributes known() const override {
+        const surface::Drape& drape = m_parts.color;
+        Attributes all = {{"anamorph:patches", static_cast<int>(drape.patches())}};
+        if (const auto parts = drape.left_out()) all.push_back({"anamorph:blocks_left_out", *parts});
+        const std::optional<double> off = m_parts.shows_depth ? drape.max_depth_error() : std::nullopt;
+        if (off) all.push_back({"anamorph:max_depth_error", *off});
+        return all;
+    }
     Attributes reached(const ParallelFor& parallel_for) const override {
         const surface::Drape& drape = m_parts.color;
         const Reached reached = drape.reached(parallel_for);
-        Attributes all = {{"anamorph:max_error", reached.max_error},
-                          {"anamorph:exact_fraction", reached.exact_fraction},
-                          {"anamorph:patches", static_cast<int>(drape.patches())}};
+        Attributes all = known();
+        all.push_back({"anamorph:max_error", reached.max_error});
+        all.push_back({"anamorph:exact_fraction", reached.exact_fraction});
         const std::optional<int> holes = m_parts.counts_holes ? drape.holes(parallel_for) : std::nullopt;
         if (holes) all.push_back({"anamorph:holes", *holes});
-        if (const auto parts = drape.left_out()) all.push_back({"anamorph:blocks_left_out", *parts});
         return all;
     }
     std::unique_ptr<const SolvedPicture> of_moved() const override {

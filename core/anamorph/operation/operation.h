@@ -82,8 +82,10 @@ class SolvedPicture {
     /// The attributes that tell what was reached over the whole picture.
     virtual Attributes reached(const ParallelFor& parallel_for) const = 0;
     /// Does reached() compute every pixel, so that it takes as long as drawing all of them? Hosts that open a picture to
-    /// read a part of it go without.
+    /// read a part of it go without, unless they are asked for it (rows::reached).
     virtual bool reached_by_drawing() const { return false; }
+    /// What of reached() is known where the rest is not.
+    virtual Attributes known() const { return {}; }
     /// The picture, where it is one of maps (image/picture.h): it may be joined with another (chain/joined.h).
     virtual const Picture* of_maps() const { return nullptr; }
     /// The picture of the channels that are only moved (PictureRequest::moved_channels), bit for bit; what it shows in others

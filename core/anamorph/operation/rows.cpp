@@ -228,6 +228,15 @@ Parameter hash() {
         "1: the picture says its hash, anamorph:hash, for which all of it is drawn when it is opened");
 }
 
+/// `where`: the schemes of which it says more.
+Parameter reached(const std::string& where) {
+    return toggle("reached", "0",
+                  where +
+                      ": 1: the picture says what it reached, anamorph:max_error and what else is counted, "
+                      "which takes as "
+                      "long as drawing all of it when it is opened");
+}
+
 Parameter tol() {
     return number("tol", "source pixels", "0.01", 0, kInfinity,
                   "most that a source point may be off; 0: every pixel exactly");

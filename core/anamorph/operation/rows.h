@@ -53,7 +53,7 @@ Parameter image(const char* name, const std::string& doc);
 Parameter file(const char* name, const std::string& doc);
 
 /// Keys that only files have a use for, recipes and what they are written to; other hosts draw one picture of what they are given.
-inline constexpr const char* kKeysOfRecipes[] = {"subimage", "tile", "mip", "hash", "frames"};
+inline constexpr const char* kKeysOfRecipes[] = {"subimage", "tile", "mip", "hash", "reached", "frames"};
 
 Parameter size(const std::string& doc);
 Parameter overscan();
@@ -62,6 +62,7 @@ Parameter concatenate();
 Parameter tile();
 Parameter mip();
 Parameter hash();
+Parameter reached(const std::string& where);
 Parameter tol();
 Parameter colorspace(const std::string& doc);
 

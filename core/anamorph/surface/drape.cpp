@@ -140,14 +140,41 @@ struct Drape::Spot {
     double weight[3] = {};
 };
 
+/// Corners of facets, lit when they are first asked for.
+class Drape::LitCorners {
+  public:
+    LitCorners(std::shared_ptr<const SharedTree> surface, std::shared_ptr<const DrapeMap> map)
+        : m_surface(std::move(surface)),
+          m_map(std::move(map)),
+          m_lit(m_map->corners()),
+          m_once(m_map->corners()) {}
+
+    /// That of a corner of a facet that has been asked for: then so have been the facets of the corners beside it in the list, as a
+    /// run of OnceEach is of more corners where it is one of the paper's blocks, which have four each.
+    const LitPoint& at(std::uint32_t corner) {
+        m_once.ask(corner, [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i) {
+                const FacetCorner& c = m_map->corner(static_cast<std::uint32_t>(i));
+                m_lit[i] = lit_point(m_surface->tree.surface(), m_map->camera(), c.u, c.v);
+            }
+        });
+        return m_lit[corner];
+    }
+
+  private:
+    std::shared_ptr<const SharedTree> m_surface;
+    std::shared_ptr<const DrapeMap> m_map;
+    std::vector<LitPoint> m_lit;
+    OnceEach m_once;
+};
+
 Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
              const DrapeOptions& options)
     : m_surface(std::move(surface)),
       m_options(options),
       m_map(map_or_least_tol(*m_surface, camera, picture, options)) {
     if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
-        for (const FacetCorner& corner : m_map->facets().corners)
-            m_lit.push_back(lit_point(m_surface->tree.surface(), m_map->camera(), corner.u, corner.v));
+        m_lit = std::make_shared<LitCorners>(m_surface, m_map);
     const Chart flat(Projection::rectilinear, picture.width, picture.height);
     m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
     m_picture.filter = options.filter;
@@ -162,6 +189,11 @@ Reached Drape::reached(const ParallelFor& parallel_for) const {
     // So that they are not found in the midst of drawing, on one thread.
     if (m_options.output == Output::bound) m_map->find_bounds(parallel_for);
     return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{m_map->max_error(parallel_for), 0};
+}
+
+std::optional<double> Drape::max_depth_error() const {
+    if (m_options.scheme != DrapeScheme::automatic) return {};
+    return m_map->max_depth_error();
 }
 
 std::optional<int> Drape::holes(const ParallelFor& parallel_for) const {
@@ -185,8 +217,7 @@ Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
     const std::size_t at = pixels.index(x, y);
     Spot spot;
     if (pixels.facet[at] == SeenPixels::kNone) return spot;
-    const Facets& facets = m_map->facets();
-    spot.facet = &facets.facets[static_cast<std::size_t>(pixels.facet[at])];
+    spot.facet = &m_map->facet(pixels.facet[at]);
     spot.u = pixels.u[at];
     spot.v = pixels.v[at];
     spot.nearness = m_map->nearness_at(pixels, at);
@@ -198,15 +229,14 @@ Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
 
 /// The weights of a point of the screen.
 void Drape::weigh(Spot& spot, double x, double y) const {
-    const Facets& facets = m_map->facets();
     spot.facet = &m_map->part_of(*spot.facet, spot.u, spot.v);
-    const double unit = std::ldexp(1.0, facets.grid_bits);
+    const double unit = std::ldexp(1.0, m_map->grid_bits());
     const double px = (x - m_map->width() / 2.0) * unit, py = (y - m_map->height() / 2.0) * unit;
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
-        const FacetCorner &a = facets.corners[spot.facet->corner[(k + 1) % 3]],
-                          &b = facets.corners[spot.facet->corner[(k + 2) % 3]],
-                          &c = facets.corners[spot.facet->corner[k]];
+        const FacetCorner &a = m_map->corner(spot.facet->corner[(k + 1) % 3]),
+                          &b = m_map->corner(spot.facet->corner[(k + 2) % 3]),
+                          &c = m_map->corner(spot.facet->corner[k]);
         spot.weight[k] = std::fabs(edge_function(a, b, px, py)) * c.weight;
         sum += spot.weight[k];
     }
@@ -215,9 +245,9 @@ void Drape::weigh(Spot& spot, double x, double y) const {
 
 glm::dvec3 Drape::normal(const Spot& spot) const {
     glm::dvec3 sum(0.0);
-    const glm::dvec3& first = m_lit[spot.facet->corner[0]].normal;
+    const glm::dvec3& first = m_lit->at(spot.facet->corner[0]).normal;
     for (int k = 0; k < 3; ++k) {
-        const glm::dvec3& n = m_lit[spot.facet->corner[k]].normal;
+        const glm::dvec3& n = m_lit->at(spot.facet->corner[k]).normal;
         // On a silhouette the corners may show different sides.
         sum += spot.weight[k] * (glm::dot(n, first) < 0 ? -n : n);
     }
@@ -243,7 +273,7 @@ void Drape::put_values(const Spot& spot, int x, int y, float* to) const {
     const bool seen = spot.facet != nullptr;
     switch (m_options.own) {
         case DrapeOutput::depth: {
-            const double depth = m_map->facets().inverse_depth ? 1 / spot.nearness : -spot.nearness;
+            const double depth = m_map->inverse_depth() ? 1 / spot.nearness : -spot.nearness;
             *to = static_cast<float>(seen ? depth : HUGE_VAL);
             return;
         }
@@ -304,7 +334,7 @@ void Drape::light_pixel(const Spot& spot, float* pixel, int channels, const Alph
     Light light;
     glm::dvec3 ray(0.0);
     for (int k = 0; k < 3; ++k) {
-        const LitPoint& corner = m_lit[spot.facet->corner[k]];
+        const LitPoint& corner = m_lit->at(spot.facet->corner[k]);
         ray += spot.weight[k] * corner.ray;
         if (m_options.lighting.shading == DrapeShading::phong) continue;
         const auto weight = static_cast<float>(spot.weight[k]);
@@ -403,7 +433,7 @@ class Drape::EdgePainter {
         const int channels = m_layers.source.channels();
         const AlphaChannel& alpha = m_layers.alpha;
         const DrapeMap& map = *m_drape.m_map;
-        Spot spot{&map.facets().facets[part.facet], part.u, part.v};
+        Spot spot{&map.facet(std::size_t{part.facet}), part.u, part.v};
         m_drape.weigh(spot, part.x, part.y);
         const bool of_back = m_back_sampler && m_drape.shows_back(*spot.facet, part.x, part.y);
         const DrapeMap& of_side = of_back ? *m_drape.m_back_map : map;

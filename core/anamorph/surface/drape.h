@@ -75,6 +75,10 @@ class Drape {
     /// The largest bound of what the camera sees, or nearly so, in pixels of the screen, and how much is exact.
     Reached reached(const ParallelFor& parallel_for) const;
     double max_error() const { return m_map->max_error(); }
+    /// The largest bound of how far the depth that is drawn at a pixel (DrapeOutput::depth), before it is rounded to float, is from
+    /// that of the surface at the source point of the pixel: by e_z of facets.h, in units of space. None of the paper's blocks, nor
+    /// where pixels have points of their own, whose depth it is.
+    std::optional<double> max_depth_error() const;
     /// The number of patches that the camera sees, or nearly so.
     std::size_t patches() const { return m_map->patches(); }
 
@@ -98,6 +102,7 @@ class Drape {
   private:
     /// A pixel on the facet that is seen there.
     struct Spot;
+    class LitCorners;
 
     Spot spot(const SeenPixels& pixels, int x, int y) const;
     void weigh(Spot& spot, double x, double y) const;
@@ -124,8 +129,8 @@ class Drape {
     std::shared_ptr<SharedTree> m_surface;
     DrapeOptions m_options;
     std::shared_ptr<const DrapeMap> m_map,
-        m_back_map;               ///< the same surface, with the points of either picture
-    std::vector<LitPoint> m_lit;  ///< corners, where they are lit
+        m_back_map;                     ///< the same surface, with the points of either picture
+    std::shared_ptr<LitCorners> m_lit;  ///< where corners are lit
     Picture m_picture;
     std::vector<Picture::Map> m_back_maps;
 };

@@ -76,6 +76,7 @@ DrapeMap::DrapeMap(std::unique_ptr<FacetRoom> room, const Camera& camera, const 
         m_most_bound = std::max(m_most_bound, leaf.bound);
         m_most_by_u = std::max(m_most_by_u, leaf.by_u);
         m_most_by_v = std::max(m_most_by_v, leaf.by_v);
+        m_most_depth_bound = std::max(m_most_depth_bound, leaf.depth_bound);
     }
 }
 
@@ -96,11 +97,19 @@ DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera
       m_most_bound(HUGE_VAL),
       m_most_by_u(m_blocks->most_by_u()),
       m_most_by_v(m_blocks->most_by_v()),
-      m_pool(std::move(pool)) {}
+      m_most_depth_bound(HUGE_VAL),
+      m_pool(std::move(pool)) {
+    m_room->facets = m_blocks->empty_facets();
+    m_made.emplace(m_blocks->count());
+}
 
-const Facets& DrapeMap::facets() const {
-    if (m_blocks) std::call_once(m_made, [&] { m_room->facets = m_blocks->facets(); });
-    return m_room->facets;
+const Facet& DrapeMap::facet(std::size_t index) const {
+    if (m_blocks)
+        m_made->ask(index / 2, [&](std::size_t first, std::size_t end) {
+            for (std::size_t block = first; block < end; ++block)
+                m_blocks->make_facets(block, m_room->facets);
+        });
+    return m_room->facets.facets[index];
 }
 
 /// The bounds of the patches.
@@ -121,10 +130,10 @@ const std::vector<double>& DrapeMap::bounds(const ParallelFor& parallel_for) con
 const Facet& DrapeMap::part_of(const Facet& facet, double u, double v) const {
     if (!m_blocks) return facet;
     // Cut from the first corner to the third.
-    const Facet& first = facets().facets[2 * facet.leaf];
-    const FacetCorner &a = facets().corners[first.corner[0]], &c = facets().corners[first.corner[2]];
+    const Facet& first = this->facet(2 * std::size_t{facet.leaf});
+    const FacetCorner &a = corner(first.corner[0]), &c = corner(first.corner[2]);
     const bool right = (u - a.u) * (c.v - a.v) >= (v - a.v) * (c.u - a.u);
-    return right ? first : facets().facets[2 * facet.leaf + 1];
+    return right ? first : this->facet(2 * std::size_t{facet.leaf} + 1);
 }
 
 double DrapeMap::max_error(const ParallelFor& parallel_for) const {
@@ -378,19 +387,18 @@ Jacobian DrapeMap::jacobian(double x, double y, int) const noexcept {
     const auto region = region_at(i, j);
     const double seen = region->pixels().facet[region->pixels().index(i, j)];
     if (seen == SeenPixels::kNone) return {};
-    return jacobian_of(facets().facets[static_cast<std::size_t>(seen)], x, y);
+    return jacobian_of(facet(seen), x, y);
 }
 
 /// The derivative of the facet's projective map.
 Jacobian DrapeMap::jacobian_of(const Facet& facet, double x, double y) const {
-    const double unit = std::ldexp(1.0, facets().grid_bits);
+    const double unit = std::ldexp(1.0, grid_bits());
     const double px = (x - width() / 2.0) * unit, py = (y - height() / 2.0) * unit;
     // Weighted sums over the corners of 1, u and v, and their derivatives by x and y.
     double w[3] = {}, u[3] = {}, v[3] = {};
     for (int k = 0; k < 3; ++k) {
-        const FacetCorner &a = facets().corners[facet.corner[(k + 1) % 3]],
-                          &b = facets().corners[facet.corner[(k + 2) % 3]],
-                          &c = facets().corners[facet.corner[k]];
+        const FacetCorner &a = corner(facet.corner[(k + 1) % 3]), &b = corner(facet.corner[(k + 2) % 3]),
+                          &c = corner(facet.corner[k]);
         const double e[3] = {edge_function(a, b, px, py), -(b.y - a.y) * unit, (b.x - a.x) * unit};
         for (int n = 0; n < 3; ++n) {
             w[n] += e[n] * c.weight;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "anamorph/once_each.h"
 #include "anamorph/plan/block.h"
 #include "anamorph/room_pool.h"
 #include "anamorph/surface/facet_raster.h"
@@ -58,9 +59,15 @@ class DrapeMap final : public BlockMap {
     DrapeMap(const DrapeMap&) = delete;
     DrapeMap& operator=(const DrapeMap&) = delete;
 
-    /// The facets; those of the paper's blocks are made when they are first asked for.
-    const Facets& facets() const;
-    /// The number of patches that are drawn: the paper's blocks, or leaves of facets().
+    /// A facet; those of the paper's blocks are made when they are first asked for, and with a facet its corners.
+    const Facet& facet(std::size_t index) const;
+    const Facet& facet(double seen) const { return facet(static_cast<std::size_t>(seen)); }
+    const FacetCorner& corner(std::uint32_t index) const { return m_room->facets.corners[index]; }
+    std::size_t corners() const { return m_room->facets.corners.size(); }
+    /// As in Facets.
+    int grid_bits() const { return m_room->facets.grid_bits; }
+    bool inverse_depth() const { return m_room->facets.inverse_depth; }
+    /// The number of patches that are drawn: the paper's blocks, or leaves of facets.
     std::size_t patches() const { return m_blocks ? m_blocks->count() : m_room->facets.leaves.size(); }
     /// Of the paper's blocks, parts that may be in view and are not drawn (OkaRaster::left_out).
     std::optional<int> left_out() const {
@@ -74,6 +81,9 @@ class DrapeMap final : public BlockMap {
     const std::shared_ptr<const OkaRaster>& oka_blocks() const { return m_blocks; }
     /// An upper bound of the bounds of all blocks, in pixels of the screen.
     double max_error(const ParallelFor& parallel_for = serial_for) const;
+
+    /// The largest FacetLeaf::depth_bound; infinite of the paper's blocks.
+    double max_depth_error() const { return m_most_depth_bound; }
 
     /// Has each pixel a point of its own?
     bool exact_points() const { return m_surface != nullptr; }
@@ -122,13 +132,14 @@ class DrapeMap final : public BlockMap {
     void for_leaves(const SeenRegion& region, const Box& box, const Body& body) const;
 
     std::shared_ptr<const OkaRaster> m_blocks;  ///< the paper's blocks, or null
-    mutable std::once_flag m_made;
+    mutable std::optional<OnceEach> m_made;     ///< facets of the paper's blocks
     std::unique_ptr<FacetRoom> m_room;
     Camera m_camera;
     Size m_picture;
     double m_for_float;
     /// The largest bound of a leaf, and the largest FacetLeaf::by_u and by_v.
     double m_most_bound = 0, m_most_by_u = 0, m_most_by_v = 0;
+    double m_most_depth_bound = 0;
     mutable std::once_flag m_bounded;
     mutable std::vector<double> m_bounds;  ///< bounds of the patches, once they are asked for
     std::shared_ptr<const DrapedSurface> m_surface;

@@ -34,14 +34,11 @@ class Seen {
         return x >= b.x0 && x < b.x1 && y >= b.y0 && y < b.y1;
     }
     double facet(int x, int y) const { return m_pixels.facet[m_pixels.index(x, y)]; }
-    std::uint32_t leaf(double facet) const {
-        return m_map.facets().facets[static_cast<std::size_t>(facet)].leaf;
-    }
+    std::uint32_t leaf(double facet) const { return m_map.facet(facet).leaf; }
     /// Have two facets a corner in common?
     bool touch(double a, double b) const {
-        const auto& facets = m_map.facets().facets;
-        const auto& p = facets[static_cast<std::size_t>(a)].corner;
-        const auto& q = facets[static_cast<std::size_t>(b)].corner;
+        const auto& p = m_map.facet(a).corner;
+        const auto& q = m_map.facet(b).corner;
         return std::any_of(std::begin(p), std::end(p), [&](std::uint32_t corner) {
             return corner == q[0] || corner == q[1] || corner == q[2];
         });
@@ -58,8 +55,7 @@ class Seen {
         if (here == SeenPixels::kNone || there == SeenPixels::kNone) return true;
         if (leaf(here) == leaf(there) || touch(here, there)) return false;
         const auto jacobian = [&](double f) {
-            return m_map.jacobian_of(m_map.facets().facets[static_cast<std::size_t>(f)], x + dx / 2.0 + 0.5,
-                                     y + dy / 2.0 + 0.5);
+            return m_map.jacobian_of(m_map.facet(f), x + dx / 2.0 + 0.5, y + dy / 2.0 + 0.5);
         };
         const auto usual = [&](const Jacobian& j) {
             const Size& size = m_map.picture();
@@ -84,9 +80,9 @@ std::vector<EdgePart> parts_of(const DrapeMap& map, const SeenPixels& samples, i
             const std::size_t at = samples.index(x * kEdgeSamples + i, y * kEdgeSamples + j);
             if (samples.facet[at] == SeenPixels::kNone) continue;
             const auto facet = static_cast<std::uint32_t>(samples.facet[at]);
-            const auto& facets = map.facets().facets;
+            const std::uint32_t leaf = map.facet(std::size_t{facet}).leaf;
             auto part = std::find_if(parts.begin(), parts.end(), [&](const EdgePart& p) {
-                return facets[p.facet].leaf == facets[facet].leaf;
+                return map.facet(std::size_t{p.facet}).leaf == leaf;
             });
             if (part == parts.end()) part = parts.insert(part, {facet, 0, 0, 0, 0, 0});
             part->x += x + (i + 0.5) / kEdgeSamples;

@@ -68,16 +68,18 @@ class PatchView {
     /// The bound (E) on the screen.
     struct Bound {
         double bound;
-        double depth;  ///< of what is drawn, at least
+        double depth;      ///< of what is drawn, at least
+        double off_depth;  ///< e_z, and what it is rounded by
         Sight sight;
     };
     Bound bound(const SurfacePatch& patch, const FrameRange& p) const {
-        Bound b{0, 0, sight_of(p)};
+        Bound b{0, 0, 0, sight_of(p)};
         const double rounding = 2 * patch.rounding * m_size + frame_rounding(p);
         double reach[3][4];
         simd::reach_along(b.sight.axes, patch.bends, 3, reach);
         for (int k = 0; k < 3; ++k) reach[0][k] += reach[1][k] + reach[2][k];
-        b.depth = std::max(p.low(2), m_camera.near()) - (reach[0][2] + rounding);
+        b.off_depth = reach[0][2] + rounding;
+        b.depth = std::max(p.low(2), m_camera.near()) - b.off_depth;
         b.bound = on_screen(across(b.sight, reach[0]) + glm::dvec2(2 * rounding), b.depth);
         if (!std::isfinite(b.bound)) return bound_by_place(b, p);
         return b;
@@ -86,12 +88,16 @@ class PatchView {
     FacetLeaf leaf(const SurfacePatch& patch, std::int32_t index, const FrameRange& p, const Bound& b) const {
         double reach[2][4];
         simd::reach_along(b.sight.axes, patch.slopes, 2, reach);
+        // What rows make of depths, u and v, sums of three products whose weights are not negative, is off by a few units of 2^-53.
+        const double slopes = reach[0][2] + reach[1][2],
+                     rounding = 0x1p-48 * (std::fabs(p.high(2)) + (std::isfinite(slopes) ? slopes : 0));
         return {index,
                 b.bound,
                 on_screen(across(b.sight, reach[0]), b.depth),
                 on_screen(across(b.sight, reach[1]), b.depth),
                 p.low(2),
-                p.high(2)};
+                p.high(2),
+                b.off_depth + rounding};
     }
 
   private:
@@ -103,6 +109,7 @@ class PatchView {
     Bound bound_by_place(Bound b, const FrameRange& p) const {
         const double rounding = frame_rounding(p);
         b.depth = std::max(p.low(2), m_camera.near()) - rounding;
+        b.off_depth = p.high(2) - p.low(2) + 2 * rounding;
         glm::dvec2 width(0.0);
         for (int i = 0; i < 2; ++i) {
             width[i] = p.high(i) - p.low(i);

@@ -12,8 +12,11 @@
 // where (X, Y, Z) is f(q) and Z' = Z + e the depth that it is drawn at. It does not matter how a patch is cut into
 // triangles: next to smaller patches it is a fan over all their corners, so that neighbours share whole edges.
 //
+// The depth that is drawn of q is sum l_i f_z(q_i), at most e_z from the surface's own.
+//
 // Corners are then moved to a grid of 2^-bits pixels. As the weights with which corners make up a point of the screen
-// are not negative and their sum is 1, no point moves farther than a corner.
+// are not negative and their sum is 1, no point moves farther than a corner; each place of the screen then shows another q of the
+// triangle, with the depth that belongs to that one.
 #pragma once
 
 #include <array>
@@ -56,6 +59,8 @@ struct FacetLeaf {
     double by_u, by_v;  ///< the most pixels on the screen per unit of u and of v
     /// The least and the largest depth ahead of the camera that the patch may have.
     double nearest = -HUGE_VAL, farthest = HUGE_VAL;
+    double depth_bound =
+        HUGE_VAL;  ///< of how far the depth of what is drawn is from that of the same point of the surface
 };
 
 /// The part of a surface that a camera sees.

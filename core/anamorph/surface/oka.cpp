@@ -539,27 +539,30 @@ OkaBlock OkaRaster::block_of(const simd::Parallelogram& p) const {
     return block;
 }
 
-Facets OkaRaster::facets() const {
-    Facets made;
-    made.grid_bits = grid_bits_of(m_camera.screen());
-    made.inverse_depth = false;
-    const double unit = std::ldexp(1.0, made.grid_bits);
-    for (const simd::Parallelogram& p : m_room->blocks) {
-        const OkaBlock b = block_of(p);
-        const auto first = static_cast<std::uint32_t>(made.corners.size()),
-                   leaf = static_cast<std::uint32_t>(made.leaves.size());
-        const double corners[4][2] = {{b.u0, b.v0}, {b.u1, b.v0}, {b.u1, b.v1}, {b.u0, b.v1}};
-        for (const auto& [u, v] : corners) {
-            const glm::dvec3 at = b.centre + (u - b.u) * b.by_u + (v - b.v) * b.by_v;
-            made.corners.push_back(
-                {at.x * unit, at.y * unit, 1, -(m_blocks.linear_depth ? at.z : b.centre.z), u, v});
-        }
-        made.leaves.push_back({SurfacePatch::kNone, HUGE_VAL, glm::length(glm::dvec2(b.by_u)),
-                               glm::length(glm::dvec2(b.by_v))});
-        made.facets.push_back({{first, first + 1, first + 2}, leaf});
-        made.facets.push_back({{first, first + 2, first + 3}, leaf});
+Facets OkaRaster::empty_facets() const {
+    Facets facets;
+    facets.grid_bits = grid_bits_of(m_camera.screen());
+    facets.inverse_depth = false;
+    facets.corners.resize(4 * count());
+    facets.facets.resize(2 * count());
+    facets.leaves.resize(count());
+    return facets;
+}
+
+void OkaRaster::make_facets(std::size_t block, Facets& to) const {
+    const double unit = std::ldexp(1.0, to.grid_bits);
+    const OkaBlock b = block_of(m_room->blocks[block]);
+    const auto first = static_cast<std::uint32_t>(4 * block), leaf = static_cast<std::uint32_t>(block);
+    FacetCorner* corner = to.corners.data() + first;
+    const double corners[4][2] = {{b.u0, b.v0}, {b.u1, b.v0}, {b.u1, b.v1}, {b.u0, b.v1}};
+    for (const auto& [u, v] : corners) {
+        const glm::dvec3 at = b.centre + (u - b.u) * b.by_u + (v - b.v) * b.by_v;
+        *corner++ = {at.x * unit, at.y * unit, 1, -(m_blocks.linear_depth ? at.z : b.centre.z), u, v};
     }
-    return made;
+    to.leaves[block] = {SurfacePatch::kNone, HUGE_VAL, glm::length(glm::dvec2(b.by_u)),
+                        glm::length(glm::dvec2(b.by_v))};
+    to.facets[2 * block] = {{first, first + 1, first + 2}, leaf};
+    to.facets[2 * block + 1] = {{first, first + 2, first + 3}, leaf};
 }
 
 double OkaRaster::lost_by(const OkaBlock& block, const simd::ParallelogramGrid& grid) const {

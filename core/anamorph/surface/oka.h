@@ -75,7 +75,7 @@ class OkaRaster {
     OkaRaster(const OkaRaster&) = delete;
     OkaRaster& operator=(const OkaRaster&) = delete;
 
-    /// Finds what is seen in a box, as FacetRaster::draw does. A pixel's facet is the first of its block's in facets();
+    /// Finds what is seen in a box, as FacetRaster::draw does. A pixel's facet is the first of its block's (make_facets());
     /// nearness is that of linear depth, and empty without.
     void draw(const Box& box, SeenPixels& seen, int times = 1) const;
 
@@ -90,8 +90,11 @@ class OkaRaster {
     /// The most pixels on the screen per unit of u; most_by_v() is the same per unit of v.
     double most_by_u() const { return m_most_by_u; }
     double most_by_v() const { return m_most_by_v; }
-    /// Makes two facets for each block, in the order of blocks; leaves have no bound. Corners are not rounded to a grid.
-    Facets facets() const;
+    /// Room for facets of all blocks, none of them made.
+    Facets empty_facets() const;
+    /// Makes the corners, the two facets and the leaf of a block, at their places in the order of blocks; leaves have no bound. Corners
+    /// are not rounded to a grid.
+    void make_facets(std::size_t block, Facets& to) const;
     /// The largest distance, in pixels, of a drawn point of a block from where it is seen. By Taylor's formula (2.9) about the
     /// block's centre, axis by axis, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
     ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|

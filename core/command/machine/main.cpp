@@ -210,7 +210,8 @@ class Command {
         if (!m_settings.deformations.empty())
             sum.deformations =
                 parse_deformations_file(file_text(m_settings.deformations), m_settings.deformations);
-        const BlockFrame frame = run_block_machine(machine, *make_surface(sum), camera, picture);
+        const BlockFrame frame =
+            MachineBlocks(machine, make_surface(sum), camera, picture).draw_all(serial_for);
         const MachineSchedule made = schedule_of(machine, frame.counts, cost_of(sum), picture, screen);
         write(text_file::ends_with(m_settings.output, ".svg") ? schedule_svg(made)
               : m_settings.frames                             ? schedule_frames_csv(made)
