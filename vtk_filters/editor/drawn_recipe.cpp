@@ -133,7 +133,7 @@ void DrawnRecipe::draw(const ReadyPicture& picture, const Box& box, ScreenPixels
     anamorph::draw_picture(*picture.m_solved, m_stacks, box,
                            anamorph::packed_view(pixels.data(), type, box.width(), box.height(), channels),
                            anamorph::default_parallel_for());
-    const bool hdr = colors && (m_type == PixelType::half || m_type == PixelType::float32);
+    const bool hdr = colors && this->is_hdr();
     anamorph::default_parallel_for()(box.height(), [&](std::int64_t row_number) {
         const int y = static_cast<int>(row_number);
         const std::byte* from = pixels.data() + row * static_cast<std::size_t>(y);

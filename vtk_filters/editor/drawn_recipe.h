@@ -60,6 +60,14 @@ class DrawnRecipe {
     std::size_t images() const { return m_known.size(); }
     const anamorph::SourceImage& image(std::size_t i) const { return m_known[i]; }
     const std::string& image_file(std::size_t i) const { return m_image_files[i]; }
+    /// What is read of an image.
+    const anamorph::SourceStack& stack(std::size_t i) const { return *m_stacks[i]; }
+    /// The pixels' type of the first image.
+    anamorph::PixelType type() const { return m_type; }
+    /// Are its colours light, to be shown in the curve of a screen?
+    bool is_hdr() const {
+        return m_type == anamorph::PixelType::half || m_type == anamorph::PixelType::float32;
+    }
 
     /// Reads the recipe with `text`, JSON, in place of the file that is edited. `size`: that of the picture; 0: as the recipe says.
     /// Throws Error.

@@ -2,7 +2,11 @@
 #include "edit_window.h"
 
 #include <vtkCommand.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkTextProperty.h>
+#include <vtk_glew.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +17,7 @@
 
 namespace anamorph_editor {
 
+using anamorph::Box;
 using anamorph::Error;
 using anamorph::printable;
 
@@ -52,8 +57,8 @@ EditWindow::EditWindow(std::size_t panes, const std::string& title, const std::s
     for (std::size_t i = 0; i < panes; ++i) {
         const double n = double(panes), at = double(i);
         m_panes.push_back(std::make_unique<Pane>(std::array<double, 4>{at / n, lower, (at + 1) / n, 1}));
-        m_bands.push_back(
-            std::make_unique<Overlay>(m_panes[i]->renderer(), std::array<double, 3>{1, 1, 1}, 1.0f));
+        m_bands.push_back(std::make_unique<Overlay>(m_panes[i]->renderer(), m_panes[i]->damage(),
+                                                    std::array<double, 3>{1, 1, 1}, 1.0f));
         m_window->AddRenderer(m_panes[i]->renderer());
     }
     m_lower->SetViewport(0, 0, 1, lower);
@@ -69,20 +74,42 @@ EditWindow::EditWindow(std::size_t panes, const std::string& title, const std::s
     m_observer->SetCallback(&EditWindow::handle);
     m_observer->SetClientData(this);
     for (const unsigned long event : kEvents) m_interactor->AddObserver(event, m_observer);
-    m_panes[0]->renderer()->AddObserver(vtkCommand::StartEvent, m_observer);
+    m_window->AddObserver(vtkCommand::StartEvent, m_observer);
+    m_window->AddObserver(vtkCommand::EndEvent, m_observer);
 }
 
 EditWindow::~EditWindow() {
     m_interactor->RemoveObserver(m_observer);
-    m_panes[0]->renderer()->RemoveObserver(m_observer);
+    m_window->RemoveObserver(m_observer);
 }
 
+namespace {
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+std::string at_most(double error) {
+    return "off by at most " + anamorph::shortest(static_cast<float>(error)) + " px";
+}
+
+}  // namespace
+
 void EditWindow::drew(std::chrono::steady_clock::time_point start, double max_error, double tol) {
-    m_milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    m_milliseconds = milliseconds_since(start);
+    m_bound = max_error;
     m_off = std::isnan(max_error) ? "off as its machine is"
-                                  : "off by at most " + anamorph::shortest(static_cast<float>(max_error)) +
-                                        " px (tol " + anamorph::shortest(tol) + ")";
+                                  : at_most(max_error) + " (tol " + anamorph::shortest(tol) + ")";
+}
+
+void EditWindow::drew_by_fragments(std::chrono::steady_clock::time_point start, double bound) {
+    m_milliseconds = milliseconds_since(start);
+    m_bound = bound;
+    m_off = at_most(bound) + " (by fragments)";
+}
+
+void EditWindow::draw_by_fragments(bool does) {
+    m_by_fragments = does;
+    m_forgotten = true;
 }
 
 bool EditWindow::save() {
@@ -95,10 +122,66 @@ bool EditWindow::save() {
 void EditWindow::update() {
     std::vector<bool> anew;
     for (const auto& pane : m_panes) anew.push_back(pane->update() || m_forgotten);
+    for (std::size_t i = 0; i < m_panes.size(); ++i)
+        if (anew[i]) m_panes[i]->damage().add_all();
+    if (std::find(anew.begin(), anew.end(), true) != anew.end()) m_lower_damage.add_all();
     m_forgotten = false;
     const std::string before = m_error;
     if (this->guarded([&] { this->draw(anew); })) m_error = before;
     this->write_status();
+    this->draw_damage();
+}
+
+/// Has renderers draw what changed, and nothing else.
+void EditWindow::draw_damage() {
+    const auto add = [&](vtkRenderer* renderer, const Box& pixels) {
+        const int* const corner = renderer->GetOrigin();
+        if (!pixels.empty())
+            m_drawn.push_back(
+                {corner[0] + pixels.x0, corner[1] + pixels.y0, corner[0] + pixels.x1, corner[1] + pixels.y1});
+    };
+    for (const auto& pane : m_panes) add(pane->renderer(), pane->draw_damage());
+    m_lower->SetDraw(!m_lower_damage.is_empty());
+    const int* const size = m_lower->GetSize();
+    if (!m_lower_damage.is_empty()) add(m_lower, {0, 0, size[0], size[1]});
+    m_lower_damage.clear();
+    m_drawn_area = 0;
+    for (const Box& box : m_drawn) m_drawn_area += std::int64_t{box.width()} * box.height();
+    // What is drawn comes into the window by present().
+    auto* const window = vtkOpenGLRenderWindow::SafeDownCast(m_window);
+    if (!window || !this->shows_a_window()) return;
+    window->SetFrameBlitModeToNoBlit();
+    window->SwapBuffersOff();
+}
+
+/// Takes what was drawn over to the window. Mesa's software renderer copies the buffer behind the window to it, and keeps it, so that only
+/// what changed is taken to there; graphics cards, which may exchange the two, take all of it. So does a frame in which nothing changed,
+/// as after the window was covered, and one now and then: a window that is new or resized may lose its buffer without a word.
+void EditWindow::present() {
+    auto* const window = vtkOpenGLRenderWindow::SafeDownCast(m_window);
+    if (!window || !this->shows_a_window()) return m_drawn.clear();
+    const int* const size = window->GetSize();
+    constexpr std::chrono::milliseconds kOften(500);
+    const auto now = std::chrono::steady_clock::now();
+    if (!m_keeps_buffer || m_drawn.empty() || now - m_presented_all > kOften) {
+        m_drawn = {{0, 0, size[0], size[1]}};
+        m_presented_all = now;
+    }
+    vtkOpenGLState* const state = window->GetState();
+    state->PushFramebufferBindings();
+    window->GetDisplayFramebuffer()->Bind(GL_READ_FRAMEBUFFER);
+    window->GetDisplayFramebuffer()->ActivateReadBuffer(0);
+    state->vtkglBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    state->vtkglDrawBuffer(GL_BACK);
+    state->vtkglDisable(GL_SCISSOR_TEST);
+    for (const Box& b : m_drawn)
+        glBlitFramebuffer(b.x0, b.y0, b.x1, b.y1, b.x0, b.y0, b.x1, b.y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    state->PopFramebufferBindings();
+    m_drawn.clear();
+    window->SwapBuffersOn();
+    window->Frame();
+    window->SwapBuffersOff();
+    m_keeps_buffer = state->GetRenderer().find("llvmpipe") != std::string::npos;
 }
 
 void EditWindow::write_status() {
@@ -107,7 +190,14 @@ void EditWindow::write_status() {
     m_status = std::string(time) + "   " + m_off + "   " + this->describe();
     if (this->has_changes()) m_status += "   not saved";
     if (!m_error.empty()) m_status += "\n" + m_error;
+    // Nobody reads what changes with each frame.
+    constexpr std::chrono::milliseconds kReading(150);
+    const auto now = std::chrono::steady_clock::now();
+    if (m_status == m_written || (this->has_gesture() && now - m_written_at < kReading)) return;
+    m_written = m_status;
+    m_written_at = now;
     m_text->SetInput(m_status.c_str());
+    m_lower_damage.add_all();
 }
 
 EditWindow::Display EditWindow::mouse() const {
@@ -225,6 +315,7 @@ void EditWindow::press_key() {
     this->guarded([&] {
         if (m_interactor->GetControlKey() && !saves) return this->control_key(name);
         if (name == "f") return all([](const auto& pane) { pane->fit(); });
+        if (name == "v") return this->draw_by_fragments(!m_by_fragments);
         if (name == "a") return this->select_in(i, {-1e300, -1e300, 1e300, 1e300}, Selecting::only);
         if (name == "Escape") {
             if (m_gesture == Gesture::drag)
@@ -255,6 +346,8 @@ void EditWindow::event(unsigned long event) {
     switch (event) {
         case vtkCommand::StartEvent:
             return this->update();
+        case vtkCommand::EndEvent:
+            return this->present();
         case vtkCommand::LeftButtonPressEvent:
             return this->press();
         case vtkCommand::MiddleButtonPressEvent:

@@ -9,6 +9,7 @@
 //     middle, right      moves the picture in its pane
 //     ctrl+z, ctrl+y     takes a step back; does it again (ctrl+shift+z too)
 //     ctrl+s             saves
+//     v                  drawn by the core, or by the graphics card fragment by fragment
 //     f, a, escape, q    whole picture; selects all; gives a drag up, or selects none; ends
 #pragma once
 
@@ -47,6 +48,11 @@ class EditWindow {
     const Pane& pane(std::size_t i) const { return *m_panes[i]; }
     std::size_t panes() const { return m_panes.size(); }
 
+    /// Leaves drawing the result to the graphics card, or to the core.
+    void draw_by_fragments(bool does);
+    bool draws_by_fragments() const { return m_by_fragments; }
+    /// How far any pixel of the result is off at most, in source pixels; NaN where nothing is proven.
+    double bound() const { return m_bound; }
     /// Saves the file. False where that fails, of which error() tells.
     bool save();
     /// Are there changes that are not saved?
@@ -55,6 +61,8 @@ class EditWindow {
     const std::string& status() const { return m_status; }
     /// The error that occurred last; empty where none did since.
     const std::string& error() const { return m_error; }
+    /// The pixels of the window that were drawn last, together.
+    std::int64_t drawn_area() const { return m_drawn_area; }
     /// The time that drawing the result took last, in milliseconds.
     double milliseconds() const { return m_milliseconds; }
     /// Has the program been asked to end, and may it?
@@ -94,6 +102,7 @@ class EditWindow {
     virtual void move_below(const Point<double>&) {}
 
     vtkRenderer* lower() { return m_lower; }
+    Damage& lower_damage() { return m_lower_damage; }
     /// Runs what may fail; an error is kept for the line.
     template <class Body>
     bool guarded(const Body& body) {
@@ -109,7 +118,10 @@ class EditWindow {
     /// Says that the result was drawn, which began at `start`, and is off by `max_error` source pixels at most (NaN: not proven), of the
     /// tolerance `tol`.
     void drew(std::chrono::steady_clock::time_point start, double max_error, double tol);
+    /// The same of what the graphics card draws, which is off by `bound` at most.
+    void drew_by_fragments(std::chrono::steady_clock::time_point start, double bound);
     void set_saved() { m_saved = this->text(); }
+    bool has_gesture() const { return m_gesture != Gesture::none; }
     bool is_dragging() const { return m_gesture == Gesture::drag; }
     void render() { m_interactor->Render(); }
     /// Has the next drawing draw all panes.
@@ -122,6 +134,9 @@ class EditWindow {
     static void handle(vtkObject* caller, unsigned long event, void* window, void*);
     void event(unsigned long event);
     void update();
+    void draw_damage();
+    void present();
+    bool shows_a_window() const { return m_window->GetShowWindow() && !m_window->GetUseOffScreenBuffers(); }
     void press();
     void move();
     void release();
@@ -139,14 +154,21 @@ class EditWindow {
 
     std::string m_file, m_saved, m_status, m_error;
     std::string m_off;  ///< how far the result is off at most, in words; empty before it is drawn
-    double m_milliseconds = 0;
-    bool m_ended = false, m_warned = false, m_forgotten = true;
+    double m_milliseconds = 0, m_bound = 0;
+    bool m_ended = false, m_warned = false, m_forgotten = true, m_by_fragments = false;
     Gesture m_gesture = Gesture::none;
     std::size_t m_held = 0;  ///< the pane in which a button was pressed
     Display m_pressed{}, m_last{};
     std::vector<std::unique_ptr<Pane>> m_panes;
     std::vector<std::unique_ptr<Overlay>> m_bands;
     vtkNew<vtkCallbackCommand> m_observer;
+    Damage m_lower_damage;
+    std::vector<anamorph::Box> m_drawn;  ///< pixels of the window that were drawn since it was presented
+    std::int64_t m_drawn_area = 0;
+    bool m_keeps_buffer = false;  ///< does what was presented stay behind the window?
+    std::chrono::steady_clock::time_point m_presented_all;
+    std::string m_written;  ///< the line as it is shown
+    std::chrono::steady_clock::time_point m_written_at;
     vtkNew<vtkRenderer> m_lower;
     vtkNew<vtkTextActor> m_text;
     vtkNew<vtkRenderWindow> m_window;

@@ -17,7 +17,7 @@ using anamorph::Error;
 using anamorph_editor::EditWindow;
 
 struct Arguments {
-    std::string recipe, save_as, picture;
+    std::string recipe, save_as, picture, drawing = "picture";
     bool starts_empty = false;
     std::vector<int> cells = {0, 0}, size = {1600, 860};
 };
@@ -44,6 +44,9 @@ std::unique_ptr<EditWindow> open(const Arguments& arguments) {
 
 void run(const Arguments& arguments) {
     const std::unique_ptr<EditWindow> window = open(arguments);
+    if (arguments.drawing != "picture" && arguments.drawing != "fragments")
+        throw Error("draw", anamorph::printable(arguments.drawing), "must be picture or fragments");
+    window->draw_by_fragments(arguments.drawing == "fragments");
     window->window()->SetSize(arguments.size[0], arguments.size[1]);
     if (!arguments.picture.empty()) window->window()->OffScreenRenderingOn();
     window->window()->Render();
@@ -68,7 +71,8 @@ int main(int argc, char** argv) {
         "Middle or right\n"
         "button: moves the picture. ctrl+z, ctrl+y: a step back, and again. ctrl+s: saves. g: mesh shown or "
         "not. f: whole\n"
-        "picture. a: selects all. Escape: gives a drag up. q: end. Of morphs, n: lines are drawn, or no "
+        "picture. v: drawn by the core, or by the graphics card. a: selects all. Escape: gives a drag up. q: "
+        "end. Of morphs, n: lines are drawn, or no "
         "more. "
         "Delete: features are\n"
         "taken away. Space: play, or stop. Comma, period: a step of t.");
@@ -83,6 +87,10 @@ int main(int argc, char** argv) {
     app.add_flag("--new", arguments.starts_empty,
                  "Starts a morph without features, whose file is not there yet");
     app.add_option("--save", arguments.save_as, "The file that is saved to; by default the recipe's own");
+    app.add_option(
+        "--draw", arguments.drawing,
+        "How: picture, by the core within tol; or fragments, by the graphics card, every pixel by the "
+        "formula in floats");
     app.add_option("--size", arguments.size, "Width and height of the window")
         ->expected(2)
         ->check(CLI::Range(1, 16384));

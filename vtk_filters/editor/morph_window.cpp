@@ -107,12 +107,15 @@ MorphWindow::MorphWindow(Opened opened)
     for (std::size_t i = 0; i < 2; ++i) {
         this->pane(i).set_picture(m_recipe.image(i).size());
         vtkRenderer* const renderer = this->pane(i).renderer();
-        m_overlays.emplace_back(new Overlays{
-            {renderer, kLineColor, 2}, {renderer, kPointColor, 5}, {renderer, kSelectedColor, 9}});
+        Damage& damage = this->pane(i).damage();
+        m_overlays.emplace_back(new Overlays{{renderer, damage, kLineColor, 2},
+                                             {renderer, damage, kPointColor, 5},
+                                             {renderer, damage, kSelectedColor, 9}});
     }
     this->pane(2).set_picture(m_picture);
     for (const Range& range : kSliders)
-        m_sliders.push_back(std::make_unique<Slider>(this->lower(), range.name, range.least, range.most,
+        m_sliders.push_back(std::make_unique<Slider>(this->lower(), this->lower_damage(), range.name,
+                                                     range.least, range.most,
                                                      m_recipe.values().number(range.name)));
     // A recipe that cannot be drawn is refused before there is a window.
     if (m_editor.features().size() > 0) m_recipe.ready(features_json(m_editor.features()), {});
@@ -151,23 +154,45 @@ void MorphWindow::draw_image(std::size_t i) {
 void MorphWindow::draw_picture(bool anew) {
     if (m_editor.features().size() == 0) return;
     const std::string text = features_json(m_editor.features());
-    const std::string all = text + m_recipe.values().key();
+    // What moves has a bound that is found quickly, and once it stands still a better one.
+    const std::string all =
+        text + m_recipe.values().key() + (this->draws_by_fragments() && this->is_moving() ? " moving" : "");
     if (!anew && all == m_drawn) return;
+    this->pane(2).show_pixels(!this->draws_by_fragments());
+    if (m_fragments) m_fragments->show(this->draws_by_fragments());
+    // a of the weights is in pixels of the picture.
+    const double a = m_recipe.values().number("weight_a");
+    m_recipe.values().set("weight_a", a * this->pane(2).drawn_size().width / m_picture.width);
+    const bool is_drawn =
+        this->guarded([&] { this->draws_by_fragments() ? this->draw_by_card() : this->draw_by_core(text); });
+    m_recipe.values().set("weight_a", a);
+    if (!is_drawn) throw Error(this->error());
+    m_drawn = all;
+}
+
+void MorphWindow::draw_by_core(const std::string& text) {
     const auto start = std::chrono::steady_clock::now();
     Pane& pane = this->pane(2);
-    // a of the weights is in pixels of the picture.
-    DrawnRecipe& recipe = m_recipe;
-    const double a = recipe.values().number("weight_a");
-    recipe.values().set("weight_a", a * pane.drawn_size().width / m_picture.width);
-    const bool is_drawn = this->guarded([&] {
-        const ReadyPicture ready = recipe.ready(text, pane.drawn_size());
-        recipe.draw(ready, pane.pixels().box, pane.pixels());
-        this->drew(start, ready.max_error(), recipe.values().number("tol"));
-    });
-    recipe.values().set("weight_a", a);
-    if (!is_drawn) throw Error(this->error());
+    const ReadyPicture ready = m_recipe.ready(text, pane.drawn_size());
+    m_recipe.draw(ready, pane.pixels().box, pane.pixels());
     pane.show(pane.pixels().box);
-    m_drawn = all;
+    this->drew(start, ready.max_error(), m_recipe.values().number("tol"));
+}
+
+void MorphWindow::draw_by_card() {
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Size> sizes{m_recipe.image(0).size(), m_recipe.image(1).size()};
+    const anamorph::MorphRequest request = anamorph::read_morph_request(m_recipe.values(), sizes);
+    Features features = m_editor.features();
+    if (request.pin_border) features.pin_border(*request.pin_border);
+    const anamorph::MorphOptions& options = request.options;
+    const anamorph::FeatureMap map(features, sizes, this->pane(2).drawn_size(),
+                                   anamorph::shape_mixture(options, 2),
+                                   {options.weight_a, options.weight_b, options.weight_p});
+    if (!m_fragments) m_fragments = std::make_unique<FragmentPicture>(this->pane(2), m_recipe);
+    this->pane(2).damage(this->pane(2).pixels().box);
+    m_fragments->draw(map, anamorph::color_mixture(options, 2)[1], this->is_moving());
+    this->drew_by_fragments(start, m_fragments->bound());
 }
 
 Point<double> MorphWindow::unit(std::size_t shape) const {

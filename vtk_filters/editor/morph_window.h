@@ -17,6 +17,7 @@
 #include "anamorph/morph/feature_editor.h"
 #include "drawn_recipe.h"
 #include "edit_window.h"
+#include "fragment_picture.h"
 #include "slider.h"
 
 namespace anamorph_editor {
@@ -55,10 +56,13 @@ class MorphWindow final : public EditWindow {
 
     void draw_image(std::size_t i);
     void draw_picture(bool anew);
+    void draw_by_core(const std::string& text);
+    void draw_by_card();
     void draw_features();
     void set_value(const std::string& name, double value);
     void step(double by);
     void play();
+    bool is_moving() const { return this->has_gesture() || this->plays(); }
     /// Pixels of the features' own per pixel of a picture.
     Point<double> unit(std::size_t shape) const;
 
@@ -73,6 +77,7 @@ class MorphWindow final : public EditWindow {
     int m_timer = 0;
     double m_way = 1;  ///< 1 where t grows, -1 where it falls
     std::string m_drawn;
+    std::unique_ptr<FragmentPicture> m_fragments;
     struct Overlays {
         Overlay lines, points, selected;
     };

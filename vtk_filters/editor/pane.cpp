@@ -2,10 +2,15 @@
 #include "pane.h"
 
 #include <vtkCellArray.h>
+#include <vtkCullerCollection.h>
 #include <vtkFloatArray.h>
+#include <vtkObjectFactory.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkProperty2D.h>
+#include <vtk_glew.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +44,39 @@ double next_scale(double scale, bool larger) {
 
 }  // namespace
 
-Overlay::Overlay(vtkRenderer* renderer, const std::array<double, 3>& color, float size) {
+void Damage::add(const anamorph::Bounds& box) {
+    m_box = {std::min(m_box.x0, box.x0), std::min(m_box.y0, box.y0), std::max(m_box.x1, box.x1),
+             std::max(m_box.y1, box.y1)};
+}
+
+Box Damage::pixels(const Size& size) const {
+    const Box whole{0, 0, size.width, size.height};
+    if (m_all) return whole;
+    if (this->is_empty()) return {};
+    const auto edge = [](double at, int most) { return static_cast<int>(std::clamp<double>(at, 0, most)); };
+    return {edge(std::floor(m_box.x0), size.width), edge(std::floor(m_box.y0), size.height),
+            edge(std::ceil(m_box.x1), size.width), edge(std::ceil(m_box.y1), size.height)};
+}
+
+vtkStandardNewMacro(ClipToDamage);
+
+int ClipToDamage::RenderOpaqueGeometry(vtkViewport* viewport) {
+    auto* const window = vtkOpenGLRenderWindow::SafeDownCast(viewport->GetVTKWindow());
+    if (!window) return 0;
+    const int* const corner = viewport->GetOrigin();
+    vtkOpenGLState* const state = window->GetState();
+    state->vtkglScissor(corner[0] + m_pixels.x0, corner[1] + m_pixels.y0, m_pixels.width(),
+                        m_pixels.height());
+    constexpr float kGrey = kBackground / 255.0F;
+    state->vtkglClearColor(kGrey, kGrey, kGrey, 1);
+    state->vtkglDepthMask(GL_TRUE);
+    state->vtkglClearDepth(1);
+    state->vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    return 0;
+}
+
+Overlay::Overlay(vtkRenderer* renderer, Damage& damage, const std::array<double, 3>& color, float size)
+    : m_damage(damage), m_reach(size / 2 + 2) {
     m_mapper->SetInputData(m_data);
     const auto add = [&](vtkActor2D* actor, const std::array<double, 3>& of, float wide) {
         actor->SetMapper(m_mapper);
@@ -50,7 +87,35 @@ Overlay::Overlay(vtkRenderer* renderer, const std::array<double, 3>& color, floa
     };
     add(m_edge, kEdge, size + 2);
     add(m_actor, color, size);
-    this->set_points({});
+    this->show(false);
+}
+
+void Overlay::damage(const Polyline& shape) {
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+        const Point<double>&p = shape[i], &q = shape[i > 0 ? i - 1 : 0];
+        m_damage.add({std::min(p.x, q.x) - m_reach, std::min(p.y, q.y) - m_reach,
+                      std::max(p.x, q.x) + m_reach, std::max(p.y, q.y) + m_reach});
+    }
+}
+
+bool Overlay::take(const std::vector<Polyline>& shapes) {
+    const auto is_same = [](const Polyline& a, const Polyline& b) {
+        return std::equal(
+            a.begin(), a.end(), b.begin(), b.end(),
+            [](const Point<double>& p, const Point<double>& q) { return p.x == q.x && p.y == q.y; });
+    };
+    bool changes = false;
+    const Polyline none;
+    for (std::size_t i = 0; i < std::max(shapes.size(), m_shapes.size()); ++i) {
+        const Polyline &before = i < m_shapes.size() ? m_shapes[i] : none,
+                       &now = i < shapes.size() ? shapes[i] : none;
+        if (is_same(before, now)) continue;
+        changes = true;
+        this->damage(before);
+        this->damage(now);
+    }
+    if (changes) m_shapes = shapes;
+    return changes;
 }
 
 void Overlay::show(bool visible) {
@@ -59,6 +124,7 @@ void Overlay::show(bool visible) {
 }
 
 void Overlay::set_lines(const std::vector<Polyline>& lines) {
+    if (!this->take(lines)) return;
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> cells;
     for (const Polyline& line : lines) {
@@ -71,6 +137,9 @@ void Overlay::set_lines(const std::vector<Polyline>& lines) {
 }
 
 void Overlay::set_points(const Polyline& at) {
+    std::vector<Polyline> shapes;
+    for (const Point<double>& p : at) shapes.push_back({p});
+    if (!this->take(shapes)) return;
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> cells;
     for (const Point<double>& p : at) {
@@ -90,6 +159,10 @@ Pane::Pane(const std::array<double, 4>& viewport) {
     m_mapper->SetInputData(m_rectangle);
     m_actor->SetMapper(m_mapper);
     m_actor->SetTexture(m_texture);
+    // It keeps what was drawn before, but for what m_clip clears, which comes first.
+    m_renderer->EraseOff();
+    m_renderer->GetCullers()->RemoveAllItems();
+    m_renderer->AddViewProp(m_clip);
     m_renderer->AddActor2D(m_actor);
 }
 
@@ -182,6 +255,7 @@ bool Pane::update() {
     }
     if (!m_stale) return false;
     m_stale = false;
+    m_damage.add_all();
     const auto seen = [&](int from, int side) { return from + (side + m_magnified - 1) / m_magnified; };
     m_pixels.box =
         anamorph::intersection({m_left, m_top, seen(m_left, m_size.width), seen(m_top, m_size.height)},
@@ -232,6 +306,21 @@ void Pane::show(const Box& of) {
             std::copy_n(m_pixels.at(m_left + x / m_magnified, row), 3, to);
     }
     m_image->Modified();
+    this->damage(of);
+}
+
+void Pane::damage(const Box& drawn) {
+    const double left = (drawn.x0 - m_left) * m_magnified, right = (drawn.x1 - m_left) * m_magnified,
+                 top = (drawn.y0 - m_top) * m_magnified, bottom = (drawn.y1 - m_top) * m_magnified;
+    m_damage.add({left, m_size.height - bottom, right, m_size.height - top});
+}
+
+Box Pane::draw_damage() {
+    const Box pixels = m_damage.pixels(m_size);
+    m_renderer->SetDraw(!m_damage.is_empty());
+    m_clip->set(pixels);
+    m_damage.clear();
+    return pixels;
 }
 
 }  // namespace anamorph_editor

@@ -11,6 +11,7 @@
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper2D.h>
+#include <vtkProp.h>
 #include <vtkRenderer.h>
 #include <vtkTexture.h>
 #include <vtkTexturedActor2D.h>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "anamorph/chart/chart.h"
+#include "anamorph/geometry/bounds_tree.h"
 #include "drawn_recipe.h"
 
 namespace anamorph_editor {
@@ -26,17 +28,50 @@ namespace anamorph_editor {
 using anamorph::Point;
 using Polyline = std::vector<Point<double>>;
 
+/// What of a renderer is to be drawn again, in its pixels from its lower left corner.
+class Damage {
+  public:
+    void add_all() { m_all = true; }
+    void add(const anamorph::Bounds& box);
+    bool is_empty() const { return !m_all && !(m_box.x0 < m_box.x1 && m_box.y0 < m_box.y1); }
+    /// The pixels that it touches of a renderer of this size.
+    anamorph::Box pixels(const anamorph::Size& size) const;
+    void clear() { *this = {}; }
+
+  private:
+    bool m_all = false;
+    anamorph::Bounds m_box{1e300, 1e300, -1e300, -1e300};
+};
+
+/// Confines what a renderer draws after it to a box of its pixels, which it clears.
+class ClipToDamage : public vtkProp {
+  public:
+    static ClipToDamage* New();
+    vtkTypeMacro(ClipToDamage, vtkProp);
+    void set(const anamorph::Box& pixels) { m_pixels = pixels; }
+    int RenderOpaqueGeometry(vtkViewport* viewport) override;
+
+  private:
+    anamorph::Box m_pixels;
+};
+
 /// Lines or points of one colour on a dark edge, in pixels of a renderer from its lower left corner.
 class Overlay {
   public:
-    /// `size`: the width of lines and points, in pixels.
-    Overlay(vtkRenderer* renderer, const std::array<double, 3>& color, float size);
+    /// `size`: the width of lines and points, in pixels. `damage`: of the renderer, to which is added what changes.
+    Overlay(vtkRenderer* renderer, Damage& damage, const std::array<double, 3>& color, float size);
     void set_lines(const std::vector<Polyline>& lines);
     void set_points(const Polyline& points);
 
   private:
+    /// Takes other lines or points than before. False where they are the same.
+    bool take(const std::vector<Polyline>& shapes);
+    void damage(const Polyline& shape);
     void show(bool visible);
 
+    Damage& m_damage;
+    float m_reach;  ///< how far it reaches beyond its points
+    std::vector<Polyline> m_shapes;
     vtkNew<vtkPolyData> m_data;
     vtkNew<vtkPolyDataMapper2D> m_mapper;
     vtkNew<vtkActor2D> m_edge, m_actor;
@@ -75,6 +110,16 @@ class Pane {
     ScreenPixels& pixels() { return m_pixels; }
     /// Takes over pixels() of a box of them.
     void show(const anamorph::Box& box);
+    /// What is to be drawn again, of the renderer and of a box of drawn pixels.
+    Damage& damage() { return m_damage; }
+    void damage(const anamorph::Box& drawn);
+    /// Has the renderer draw what is damaged, which it is no more then, or nothing. Returns the pixels of the renderer that it draws.
+    anamorph::Box draw_damage();
+    /// Shows them, or leaves the pane to others.
+    void show_pixels(bool visible) { m_actor->SetVisibility(visible); }
+    /// The drawn pixel in the pane's upper left corner, and pixels of the window that each is wide.
+    std::array<int, 2> first_pixel() const { return {m_left, m_top}; }
+    int magnified() const { return m_magnified; }
 
   private:
     Point<double> to_pane(const std::array<int, 2>& display);
@@ -90,6 +135,8 @@ class Pane {
     int m_rest_right = 0,
         m_rest_up = 0;  ///< pixels of the window by which it is to be moved still, fewer than one drawn
     ScreenPixels m_pixels;
+    Damage m_damage;
+    vtkNew<ClipToDamage> m_clip;
     vtkNew<vtkRenderer> m_renderer;
     vtkNew<vtkImageData> m_image;
     vtkNew<vtkPolyData> m_rectangle;

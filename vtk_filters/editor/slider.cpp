@@ -15,13 +15,14 @@ constexpr double kReach = 12, kTextAbove = 8;
 
 }  // namespace
 
-Slider::Slider(vtkRenderer* renderer, const std::string& name, double least, double most, double value)
+Slider::Slider(vtkRenderer* renderer, Damage& damage, const std::string& name, double least, double most,
+               double value)
     : m_name(name),
       m_least(std::min(least, value)),
       m_most(std::max(most, value)),
       m_value(value),
-      m_line(renderer, {0.7, 0.7, 0.7}, 3),
-      m_knob(renderer, {1, 0.85, 0.2}, 13) {
+      m_line(renderer, damage, {0.7, 0.7, 0.7}, 3),
+      m_knob(renderer, damage, {1, 0.85, 0.2}, 13) {
     m_text->GetTextProperty()->SetFontSize(13);
     renderer->AddActor2D(m_text);
 }

@@ -14,7 +14,8 @@ namespace anamorph_editor {
 class Slider {
   public:
     /// `name`: the recipe's key. Values outside of the range widen it.
-    Slider(vtkRenderer* renderer, const std::string& name, double least, double most, double value);
+    Slider(vtkRenderer* renderer, Damage& damage, const std::string& name, double least, double most,
+           double value);
 
     const std::string& name() const { return m_name; }
     double value() const { return m_value; }

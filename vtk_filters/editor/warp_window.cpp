@@ -10,6 +10,7 @@
 #include "anamorph/mesh/mesh_file.h"
 #include "anamorph/operation/warp.h"
 #include "anamorph/side_files.h"
+#include "card_texels.h"
 
 namespace anamorph_editor {
 
@@ -121,11 +122,16 @@ WarpWindow::WarpWindow(Opened opened)
       m_own_direction(opened.own_direction),
       m_pulls(opened.pulls()),
       m_editor(opened.mesh, m_from, m_to, printable(m_recipe.edited_file())),
-      m_lattice(this->pane(1 - this->edited_pane()).renderer(), kLatticeColor, 1),
-      m_edges(this->pane(this->edited_pane()).renderer(), kEdgeColor, 1),
-      m_free(this->pane(this->edited_pane()).renderer(), kFreeColor, 5),
-      m_selected(this->pane(this->edited_pane()).renderer(), kSelectedColor, 9),
-      m_fixed(this->pane(this->edited_pane()).renderer(), kFixedColor, 1) {
+      m_lattice(this->pane(1 - this->edited_pane()).renderer(), this->pane(1 - this->edited_pane()).damage(),
+                kLatticeColor, 1),
+      m_edges(this->pane(this->edited_pane()).renderer(), this->pane(this->edited_pane()).damage(),
+              kEdgeColor, 1),
+      m_free(this->pane(this->edited_pane()).renderer(), this->pane(this->edited_pane()).damage(), kFreeColor,
+             5),
+      m_selected(this->pane(this->edited_pane()).renderer(), this->pane(this->edited_pane()).damage(),
+                 kSelectedColor, 9),
+      m_fixed(this->pane(this->edited_pane()).renderer(), this->pane(this->edited_pane()).damage(),
+              kFixedColor, 1) {
     this->pane(0).set_picture(opened.source);
     this->pane(1).set_picture(opened.picture);
     // A recipe that cannot be drawn is refused before there is a window.
@@ -178,19 +184,38 @@ void WarpWindow::draw_picture(bool anew) {
     const ControlMesh mesh = this->scaled_mesh();
     std::string text = anamorph::mesh_json(mesh);
     if (!anew && text == m_drawn_text) return;
+    const Size drawn = this->pane(1).drawn_size();
+    Mesh map(mesh, m_pulls ? drawn : m_from, m_pulls ? m_to : drawn, m_recipe.values().number("amount"));
+    this->pane(1).show_pixels(!this->draws_by_fragments());
+    if (m_fragments) m_fragments->show(this->draws_by_fragments());
+    if (this->draws_by_fragments())
+        this->draw_by_card(map, anew);
+    else
+        this->draw_by_core(map, text, anew);
+    m_drawn_mesh = std::move(map);
+    m_drawn_text = std::move(text);
+}
+
+void WarpWindow::draw_by_card(const Mesh& map, bool anew) {
+    const auto start = std::chrono::steady_clock::now();
+    if (!m_pulls) anamorph_viewer::refuse_card("meshes that push");
+    if (!m_fragments) m_fragments = std::make_unique<FragmentPicture>(this->pane(1), m_recipe);
+    m_fragments->draw(map);
+    for (const Box& box : this->boxes_to_draw(m_drawn_mesh ? &*m_drawn_mesh : nullptr, map, anew))
+        this->pane(1).damage(box);
+    this->drew_by_fragments(start, m_fragments->bound());
+}
+
+void WarpWindow::draw_by_core(const Mesh& map, const std::string& text, bool anew) {
     const auto start = std::chrono::steady_clock::now();
     Pane& pane = this->pane(1);
-    const Size drawn = pane.drawn_size();
-    const ReadyPicture ready = m_recipe.ready(text, drawn);
-    Mesh map(mesh, m_pulls ? drawn : m_from, m_pulls ? m_to : drawn, m_recipe.values().number("amount"));
+    const ReadyPicture ready = m_recipe.ready(text, pane.drawn_size());
     m_drawn_pixels = 0;
     for (const Box& box : this->boxes_to_draw(m_drawn_mesh ? &*m_drawn_mesh : nullptr, map, anew)) {
         m_recipe.draw(ready, box, pane.pixels());
         pane.show(box);
         m_drawn_pixels += std::int64_t{box.width()} * box.height();
     }
-    m_drawn_mesh = std::move(map);
-    m_drawn_text = std::move(text);
     this->drew(start, ready.max_error(), m_recipe.values().number("tol"));
 }
 

@@ -13,6 +13,7 @@
 #include "anamorph/mesh/mesh_editor.h"
 #include "drawn_recipe.h"
 #include "edit_window.h"
+#include "fragment_picture.h"
 
 namespace anamorph_editor {
 
@@ -47,6 +48,8 @@ class WarpWindow final : public EditWindow {
 
     void draw_source();
     void draw_picture(bool anew);
+    void draw_by_core(const anamorph::Mesh& map, const std::string& text, bool anew);
+    void draw_by_card(const anamorph::Mesh& map, bool anew);
     void draw_mesh();
     /// The mesh as the operation reads it for a picture of the size in which it is drawn.
     anamorph::ControlMesh scaled_mesh() const;
@@ -63,6 +66,7 @@ class WarpWindow final : public EditWindow {
     std::optional<anamorph::Mesh> m_drawn_mesh;
     std::string m_drawn_text;
     std::int64_t m_drawn_pixels = 0;
+    std::unique_ptr<FragmentPicture> m_fragments;
     /// Edges of cells in the image that the mesh lies in, and in the one that its vertices lie in; points.
     Overlay m_lattice, m_edges, m_free, m_selected, m_fixed;
 };

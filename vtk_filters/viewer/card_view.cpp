@@ -21,6 +21,7 @@
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/concentric_glsl.h"
 #include "anamorph/projector/panorama_glsl.h"
+#include "shown.h"
 
 namespace anamorph_viewer {
 namespace {
@@ -34,21 +35,7 @@ constexpr const char* kTextureDec = "//VTK::TCoord::Dec";
 constexpr const char* kTextureImpl = "//VTK::TCoord::Impl";
 constexpr const char* kLast = "//VTK::DepthPeeling::Impl";
 constexpr const char* kPlace = "anamorphPlace";
-constexpr const char* kGain = "anamorphGain";
 constexpr const char* kViewpoint = "anamorphViewpoint";
-
-/// What shown() does, fragment by fragment; a gain of 0 leaves values as they are.
-constexpr const char* kShown = R"(
-  vec3 anamorphLinear = gl_FragData[0].rgb;
-  if (anamorphGain.x > 0.0) {
-    if (anamorphGain.y == 0.0)
-      anamorphLinear = mix(pow((anamorphLinear + 0.055) / 1.055, vec3(2.4)), anamorphLinear / 12.92,
-                           vec3(lessThanEqual(anamorphLinear, vec3(0.04045))));
-    anamorphLinear = max(anamorphLinear * anamorphGain.x, vec3(0.0));
-    gl_FragData[0].rgb = mix(1.055 * pow(anamorphLinear, vec3(1.0 / 2.4)) - 0.055, 12.92 * anamorphLinear,
-                             vec3(lessThanEqual(anamorphLinear, vec3(0.0031308))));
-  }
-)";
 
 /// From the core's frame of rays, y downwards and z forward, to VTK's, and back.
 glm::dvec3 turned_over(const glm::dvec3& ray) {
@@ -132,22 +119,11 @@ CardView::CardView(const CardPicture& picture, bool hdr)
     m_shader->AddProjector(m_projector);
     m_shader->HideUnpaintedOn();
     vtkShaderProperty* shaders = m_actor->GetShaderProperty();
-    shaders->AddFragmentShaderReplacement(kLast, true, std::string(kShown) + kLast, false);
+    shaders->AddFragmentShaderReplacement(kLast, true, std::string(shown_glsl()) + kLast, false);
 }
 
 void CardView::set_picture(const CardPicture& picture) {
-    const int width = m_chart.width(), height = m_chart.height() * (m_stack ? m_stack->circles : 1);
-    const auto image = image_of(width, height, 3);
-    auto* to = static_cast<float*>(image->GetScalarPointer());
-    for (int y = height - 1; y >= 0; --y)
-        for (int x = 0; x < width; ++x) {
-            const float* from =
-                &picture.pixels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                 static_cast<std::size_t>(x)) *
-                                static_cast<std::size_t>(picture.channels)];
-            for (int c = 0; c < 3; ++c) *to++ = from[picture.channels < 3 ? 0 : c];
-        }
-    m_texture->SetInputData(image);
+    m_texture->SetInputData(card_image(picture.texels, VTK_FLOAT));
     for (vtkTexture* texture : {m_texture.Get(), m_residuals.Get()}) {
         texture->SetColorModeToDirectScalars();
         texture->InterpolateOn();
@@ -347,7 +323,7 @@ void CardView::map_places(const std::string& functions, const std::string& code)
 void CardView::set_gain(double gain) {
     const bool as_it_is = !m_hdr && gain == 1;
     const float values[] = {as_it_is ? 0.0F : static_cast<float>(gain), m_hdr ? 1.0F : 0.0F};
-    m_actor->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(kGain, values);
+    m_actor->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(kShownGain, values);
 }
 
 }  // namespace anamorph_viewer

@@ -44,4 +44,18 @@ unsigned char shown_quickly(float value, bool hdr) {
     return table[std::bit_cast<std::uint32_t>(value) >> kDropped];
 }
 
+std::string_view shown_glsl() {
+    return R"(
+  vec3 anamorphLinear = gl_FragData[0].rgb;
+  if (anamorphGain.x > 0.0) {
+    if (anamorphGain.y == 0.0)
+      anamorphLinear = mix(pow((anamorphLinear + 0.055) / 1.055, vec3(2.4)), anamorphLinear / 12.92,
+                           vec3(lessThanEqual(anamorphLinear, vec3(0.04045))));
+    anamorphLinear = max(anamorphLinear * anamorphGain.x, vec3(0.0));
+    gl_FragData[0].rgb = mix(1.055 * pow(anamorphLinear, vec3(1.0 / 2.4)) - 0.055, 12.92 * anamorphLinear,
+                             vec3(lessThanEqual(anamorphLinear, vec3(0.0031308))));
+  }
+)";
+}
+
 }  // namespace anamorph_viewer

@@ -28,10 +28,6 @@ bool has_key(const std::vector<Assignment>& options, const std::string& key) {
     return std::any_of(options.begin(), options.end(), [&](const Assignment& a) { return a.key == key; });
 }
 
-[[noreturn]] void refuse_card(const std::string& what) {
-    throw Error("a graphics card does not draw " + what + ": draw must be picture");
-}
-
 /// Reads files only; neither operation has any.
 std::unique_ptr<const anamorph::Pictures> read(const anamorph::Operation& operation,
                                                const anamorph::ParameterValues& values,
@@ -111,7 +107,7 @@ CardPicture ViewedPanorama::card_chart() const {
         const anamorph::ConcentricStack stack = anamorph::read_concentric_stack(values);
         const anamorph::Chart chart = anamorph::read_slit_panorama(values, facts, stack.circles);
         check_target(anamorph::read_target_chart(values, chart));
-        return {chart, {}, 0, {}, stack};
+        return {chart, {}, {}, stack};
     }
     const anamorph::ReprojectRequest request = anamorph::read_reproject_request(values, facts);
     check_target(request.target);
@@ -119,37 +115,14 @@ CardPicture ViewedPanorama::card_chart() const {
         refuse_card("pixels from centre to centre");
     if (request.source.chart.padding().pixels > 0) refuse_card("images with padding");
     if (request.source.chart.vertical().horizon) refuse_card("parts of panoramas");
-    return {request.source.chart, request.held, 0, {}};
+    return {request.source.chart, request.held, {}};
 }
 
 CardPicture ViewedPanorama::card_picture() const {
-    constexpr int kMostSide = 8192;
-    constexpr std::int64_t kMostTexels = std::int64_t{1} << 25;
-    if (m_stacks.front()->space()) refuse_card("in another color space");
     CardPicture picture = card_chart();
     const int panoramas = picture.stack ? picture.stack->circles : 1;
-    const anamorph::Source& source = m_stacks.front()->top();
-    int level = 0;
-    const auto fits = [&](const anamorph::Size& s) {
-        return std::max(s.width, s.height) <= kMostSide && std::int64_t{s.width} * s.height <= kMostTexels;
-    };
-    while (!fits(source.size(level)) && level + 1 < source.levels()) ++level;
-    const anamorph::Size size = source.size(level);
-    if (!fits(size) || size.height % panoramas != 0) refuse_card("images as large as this");
-    const int channels = source.channels();
-    const std::size_t values_of_row =
-                          static_cast<std::size_t>(size.width) * static_cast<std::size_t>(channels),
-                      count = values_of_row * static_cast<std::size_t>(size.height);
-    const OIIO::TypeDesc type = anamorph::oiio_type(source.type());
-    std::vector<std::byte> stored(count * type.size());
-    if (!source.read(level, {0, 0, size.width, size.height}, stored.data(),
-                     static_cast<std::ptrdiff_t>(values_of_row * type.size())))
-        throw Error(m_stacks.front()->error());
-    picture.chart = picture.chart.resized(size.width, size.height / panoramas);
-    picture.channels = channels;
-    picture.pixels.resize(count);
-    OIIO::convert_pixel_values(type, stored.data(), OIIO::TypeDesc::FLOAT, picture.pixels.data(),
-                               static_cast<int>(count));
+    picture.texels = card_texels(*m_stacks.front(), panoramas);
+    picture.chart = picture.chart.resized(picture.texels.size.width, picture.texels.size.height / panoramas);
     return picture;
 }
 

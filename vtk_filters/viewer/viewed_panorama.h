@@ -14,6 +14,7 @@
 #include "anamorph/panorama/concentric.h"
 #include "anamorph/panorama/panorama.h"
 #include "anamorph/source_stack.h"
+#include "card_texels.h"
 
 namespace anamorph_viewer {
 
@@ -31,8 +32,7 @@ struct Direction {
 struct CardPicture {
     anamorph::Chart chart;
     anamorph::Orientation held;  ///< orientation of the panorama
-    int channels = 0;
-    std::vector<float> pixels;  ///< rows from the top
+    CardTexels texels;
     /// The circles whose panoramas stand one above the other, of which `chart` is that of one.
     std::optional<anamorph::ConcentricStack> stack = {};
 };

@@ -32,6 +32,29 @@ std::array<T, 4> hermite_basis(const T& s) {
     return {s2 * (s * 2.0 - 3.0) + 1.0, s2 * (s * -2.0 + 3.0), s * square(r), s2 * r};
 }
 
+/// The sum of eq. 5.3 over the elements of a patch's geometry (Patch::g), which are numbers G of their own.
+template <class T, class G>
+Point<T> hermite_sum(const Point<G> (&g)[4][4], const T& s, const T& t) {
+    const std::array<T, 4> a = hermite_basis(s), b = hermite_basis(t);
+    Point<T> sum{T(0.0), T(0.0)};
+    for (std::size_t i = 0; i < 4; ++i) {
+        Point<T> row{T(0.0), T(0.0)};
+        for (std::size_t j = 0; j < 4; ++j) {
+            row.x = row.x + b[j] * g[i][j].x;
+            row.y = row.y + b[j] * g[i][j].y;
+        }
+        sum.x = sum.x + a[i] * row.x;
+        sum.y = sum.y + a[i] * row.y;
+    }
+    return sum;
+}
+
+/// The map of a point of "from" whose displacement from the identity is `by`. `scale`: Mesh::scale().
+template <class T, class G>
+Point<T> displaced(const T& x, const T& y, const Point<G>& scale, const Point<T>& by) {
+    return {x * scale.x + by.x, y * scale.y + by.y};
+}
+
 /// The geometry of eq. 5.3 for both coordinates: g[a][b] with a = value at s = 0, at s = 1, d/ds at 0, at 1,
 /// and b so for t; s and t run over 0..1 in the cell.
 struct Patch {
@@ -41,18 +64,7 @@ struct Patch {
     /// The displacement at (s, t).
     template <class T>
     Point<T> operator()(const T& s, const T& t) const {
-        const std::array<T, 4> a = hermite_basis(s), b = hermite_basis(t);
-        Point<T> sum{T(0.0), T(0.0)};
-        for (std::size_t i = 0; i < 4; ++i) {
-            Point<T> row{T(0.0), T(0.0)};
-            for (std::size_t j = 0; j < 4; ++j) {
-                row.x = row.x + b[j] * g[i][j].x;
-                row.y = row.y + b[j] * g[i][j].y;
-            }
-            sum.x = sum.x + a[i] * row.x;
-            sum.y = sum.y + a[i] * row.y;
-        }
-        return sum;
+        return hermite_sum(g, s, t);
     }
 };
 
@@ -124,16 +136,15 @@ class Mesh {
     /// The map on one cell; also a little outside it.
     template <class T>
     Point<T> at(const Patch& patch, const T& x, const T& y) const {
-        const Point<T> d =
-            patch((x - patch.x0) / T(patch.x1 - patch.x0), (y - patch.y0) / T(patch.y1 - patch.y0));
-        return {x * m_scale.x + d.x, y * m_scale.y + d.y};
+        return displaced(
+            x, y, m_scale,
+            patch((x - patch.x0) / T(patch.x1 - patch.x0), (y - patch.y0) / T(patch.y1 - patch.y0)));
     }
     /// The map on one cell by the cell's own parameters, 0 to 1, without loss of precision where a cell is thin.
     template <class T>
     Point<T> inside(const Patch& patch, const T& s, const T& t) const {
-        const Point<T> d = patch(s, t);
-        return {(s * (patch.x1 - patch.x0) + patch.x0) * m_scale.x + d.x,
-                (t * (patch.y1 - patch.y0) + patch.y0) * m_scale.y + d.y};
+        return displaced<T>(s * (patch.x1 - patch.x0) + patch.x0, t * (patch.y1 - patch.y0) + patch.y0,
+                            m_scale, patch(s, t));
     }
     /// The map at a point.
     Point<double> at(double x, double y) const { return at(patch(cell_at(x, y)), x, y); }

@@ -135,13 +135,18 @@ inline T root(const T& square) {
 /// The least distance by which others are divided: its reciprocal is finite, and so are the powers of smaller distances.
 inline constexpr double kLeastUnit = 1e-307;
 
+/// The power c^-b of a number that is no jet.
+template <class T>
+inline T inverse_power_of_constant(const T& c, double b) {
+    using std::pow;
+    using std::sqrt;
+    return b == 2 ? 1 / (c * c) : b == 1 ? 1 / c : b == 0.5 ? 1 / sqrt(c) : pow(c, -b);
+}
 /// The power x^-b.
 template <class T>
 inline T inverse_power(const T& x, double b) {
-    using std::pow;
-    using std::sqrt;
     const auto c = constant_part(x);
-    const auto value = b == 2 ? 1 / (c * c) : b == 1 ? 1 / c : b == 0.5 ? 1 / sqrt(c) : pow(c, -b);
+    const auto value = inverse_power_of_constant(c, b);
     if constexpr (std::is_floating_point_v<T>)
         return value;
     else
@@ -267,13 +272,11 @@ void FeatureMap::sum(const T& x, const T& y, int first, int last, Point<T>* poin
         const TargetLine& line = m_lines[i];
         const Frame<T> at = frame(line, x, y);
         const T far = distance(line, at);
-        T weight(line.factor);
-        if (m_weights.b > 0) {
-            if (nearest > 0)
-                weight = feature_detail::inverse_power<T>(far * per_nearest, m_weights.b) * line.factor;
-            else if (constant_part(far) > 0)
-                continue;
-        }
+        const auto power = [&](const T& of) {
+            return feature_detail::inverse_power<T>(of * per_nearest, m_weights.b);
+        };
+        const T weight = m_weights.b > 0 ? feature_detail::weight_of_line(far, T(nearest), line.factor, power)
+                                         : T(line.factor);
         weights = weights + weight;
         if (!line.moves) continue;
         for (int k = first; k < last; ++k) {
@@ -290,7 +293,8 @@ void FeatureMap::sum(const T& x, const T& y, int first, int last, Point<T>* poin
     for (int k = first; k < last; ++k) {
         Point<T>& p = points[k - first];
         const Point<double> s = scale(k);
-        p = {(x + p.x / weights) * s.x, (y + p.y / weights) * s.y};
+        p = {feature_detail::source_coordinate(x, p.x, weights, s.x),
+             feature_detail::source_coordinate(y, p.y, weights, s.y)};
     }
 }
 

@@ -43,9 +43,26 @@
 //   8 u of the pixel's place, which is added and scaled (2 u), four times.
 //
 // - 2 of all: parts of the sum of weights, l_i and the mean are those of weights that are off themselves.
+//
+// Shaders, with u = 2^-24. GLSL 4.1 (4.7.1 of its specification) lets a quotient be off by 5 u and a square root by 9 u, as its
+// reciprocal and the quotient are; sums and products are rounded once. P is the larger coordinate of p, o the displacement at p. In
+// addition to what double has:
+//
+// - Of a + dist (shader_off): p is off by sqrt(2) u P as it becomes a float. X - p, the direction, their product and the sum round by
+//   u each, 4 u rho in along and in beside, 5.7 u rho together. The length of a line counts where along exceeds it, and then it is at
+//   most rho: as a float u rho, and u rho as it is subtracted. Squares, their sum and the root make 10 u dist, a and the sum u (dist + 2 a).
+//   With dist <= rho that is less than 19 u rho + 1.5 u P + 2 u a.
+// - Of the displacement: the place, times 3 + s, 5.7 u rho + sqrt(2) u P; rates as floats, products and two sums, 4 u (3 + s) rho; the
+//   origin as a float and the sums, 3 u |o|. In all less than (3 + s) (10 u rho + 1.5 u P) + 3 u |o|.
+// - Of a weight, in proportion: the distance over the nearest, its power, the factor and the product, (16 + b) u. A power other than
+//   those is exp2 of a product with log2: log2 is off by 8 u, or 6 u in proportion, b and the product by 2 u in proportion, exp2 by
+//   6 u + 4 u |x|: less than u (6 + 8 b + 16 b |log c|).
+// - Of sums: a quotient and a product are 6 u, so that 4 u (n + 4) holds here too; 8 u of the pixel's place hold the scale as a float.
+// Products of two of all these are less than 1 / 100 of them.
 #include "anamorph/morph/near_far_exact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "anamorph/morph/feature_rows.h"
@@ -53,7 +70,7 @@
 namespace anamorph {
 namespace {
 
-constexpr double kHalfSpacing = 0x1p-53;
+constexpr double kHalfSpacing = 0x1p-53, kInShaders = 0x1p-24;
 // Boxes are not cut for less than this, in pixels, unless less is asked for.
 constexpr double kFineEnough = 1e-6;
 
@@ -72,10 +89,24 @@ double length(double x, double y) {
     return std::sqrt(x * x + y * y);
 }
 
+/// What a shader adds to line_off().
+LineOff shader_off(const FeatureMap& map, std::size_t i, const std::vector<int>& shapes, double rho) {
+    constexpr double kUnit = 1.01 * kInShaders;
+    const FeatureMap::TargetLine& line = map.line(i);
+    const double place = 1.5 * std::max(std::fabs(line.p.x), std::fabs(line.p.y));
+    double origin = 0;
+    for (const int shape : shapes) {
+        const Point<double>& o = map.displacement(i, shape).origin;
+        origin = std::max(origin, length(o.x, o.y));
+    }
+    return {kUnit * (19 * rho + place + 2 * map.weights().a),
+            kUnit * ((3 + map.rounding(i).stretch) * (10 * rho + place) + 3 * origin)};
+}
+
 class BoxBound {
   public:
-    BoxBound(const FeatureMap& map, const std::vector<int>& shapes, double goal)
-        : m_map(map), m_shapes(shapes), m_goal(goal) {
+    BoxBound(const FeatureMap& map, const std::vector<int>& shapes, double goal, bool in_shader = false)
+        : m_map(map), m_shapes(shapes), m_goal(goal), m_in_shader(in_shader) {
         m_lines.resize(map.size());
     }
 
@@ -88,18 +119,52 @@ class BoxBound {
             m_goal = std::max(m_goal, kFineEnough);
             return all;
         }
-        Box first = box, second = box;
-        if (box.width() >= box.height())
-            first.x1 = second.x0 = box.x0 + box.width() / 2;
-        else
-            first.y1 = second.y0 = box.y0 + box.height() / 2;
+        const auto [first, second] = halves_of(box);
         return std::max(of(first), of(second));
+    }
+
+    /// The same, whose worst boxes are cut first, until there are so many.
+    double worst_first(const Box& box, std::size_t most_boxes) {
+        const auto is_less = [](const Known& a, const Known& b) { return a.parts.all() < b.parts.all(); };
+        std::vector<Known> boxes{{box, bound(box)}};
+        while (boxes.size() < most_boxes) {
+            const Known& worst = boxes.front();
+            const bool is_pixel = worst.box.width() == 1 && worst.box.height() == 1;
+            if (is_pixel || worst.parts.weights <= worst.parts.places) break;
+            const auto halves = halves_of(worst.box);
+            std::pop_heap(boxes.begin(), boxes.end(), is_less);
+            boxes.pop_back();
+            for (const Box& half : halves) {
+                boxes.push_back({half, bound(half)});
+                std::push_heap(boxes.begin(), boxes.end(), is_less);
+            }
+        }
+        return boxes.front().parts.all();
     }
 
   private:
     struct Parts {
         double places = 0, weights = 0;
+
+        /// What is no number has no bound.
+        double all() const {
+            const double sum = places + weights;
+            return std::isnan(sum) ? HUGE_VAL : sum;
+        }
     };
+    struct Known {
+        Box box;
+        Parts parts;
+    };
+
+    static std::array<Box, 2> halves_of(const Box& box) {
+        Box first = box, second = box;
+        if (box.width() >= box.height())
+            first.x1 = second.x0 = box.x0 + box.width() / 2;
+        else
+            first.y1 = second.y0 = box.y0 + box.height() / 2;
+        return {first, second};
+    }
 
     double power(double distance, double unit) const {
         return feature_detail::inverse_power(distance / unit, m_map.weights().b);
@@ -172,8 +237,8 @@ class BoxBound {
         }
         const double to_source = std::max(scale.x, scale.y);
         const double size = length(reference.x, reference.y) + std::min(mean, farthest);
-        const double sums = 4 * kHalfSpacing * (static_cast<double>(m_lines.size()) + 4) * size +
-                            8 * kHalfSpacing * (std::fabs(x) + std::fabs(y) + 2 * radius);
+        const double sums = 4 * rounding_unit() * (static_cast<double>(m_lines.size()) + 4) * size +
+                            8 * rounding_unit() * (std::fabs(x) + std::fabs(y) + 2 * radius);
         return {2 * to_source * (std::min(displaced, mean_displaced) + sums), 2 * to_source * weights};
     }
 
@@ -184,11 +249,11 @@ class BoxBound {
         const double distance = m_map.distance(line, at);
         const double rho = length(at.along, at.beside) + radius;
         LineOnBox& to = m_lines[i];
-        const LineOff off = line_off(m_map, i, rho, std::fabs(x) + std::fabs(y) + 2 * radius);
+        const LineOff off = off_of(i, rho, std::fabs(x) + std::fabs(y) + 2 * radius);
         to.off = off.distance;
         to.displaced = off.displacement;
         // Without any rounding.
-        if (radius == 0 && distance == 0 && m_map.passes_through(i, x, y)) to.off = 0;
+        if (!m_in_shader && radius == 0 && distance == 0 && m_map.passes_through(i, x, y)) to.off = 0;
         to.nearest = std::max(distance - radius - 2 * to.off, m_map.weights().a);
         const FeatureMap::Displacement& d = m_map.displacement(i, shape);
         const auto moved = [&](double origin, double along_rate, double beside_rate) {
@@ -208,7 +273,9 @@ class BoxBound {
         for (LineOnBox& l : m_lines) {
             const double ratio = (l.nearest + 2 * radius + 4 * l.off) / nearest;
             const double log = ratio > 0 ? b * std::log(ratio) : HUGE_VAL;
-            l.powers = 2 * kHalfSpacing * simd::power_rounding(std::min(log, simd::kMostPowerLog));
+            const double most = std::min(log, simd::kMostPowerLog);
+            l.powers =
+                2 * rounding_unit() * (m_in_shader ? 6 + 8 * b + 16 * most : simd::power_rounding(most));
         }
     }
 
@@ -216,7 +283,7 @@ class BoxBound {
     double moved(std::size_t i, double others, double unit) const {
         const LineOnBox& l = m_lines[i];
         const double b = m_map.weights().b, factor = m_map.line(i).factor;
-        const double constant = 2 * m_map.rounding(i).weight + l.powers;
+        const double constant = 2 * weight_rounding(i) + l.powers;
         if (b == 0 || (l.nearest == 0 && l.off == 0)) return std::min(1.0, constant);
         const double unknown = 2 * (1 + b) * l.off;
         const auto rest = [&](double distance) {
@@ -233,9 +300,21 @@ class BoxBound {
         return std::min(1.0, worst + constant);
     }
 
+    double rounding_unit() const { return m_in_shader ? kInShaders : kHalfSpacing; }
+    LineOff off_of(std::size_t i, double rho, double farthest) const {
+        const LineOff off = line_off(m_map, i, rho, farthest);
+        if (!m_in_shader) return off;
+        const LineOff more = shader_off(m_map, i, m_shapes, rho);
+        return {off.distance + more.distance, off.displacement + more.displacement};
+    }
+    double weight_rounding(std::size_t i) const {
+        return m_map.rounding(i).weight + (m_in_shader ? kInShaders * (16 + m_map.weights().b) : 0);
+    }
+
     const FeatureMap& m_map;
     const std::vector<int>& m_shapes;
     double m_goal;  ///< boxes are cut until they are below it
+    bool m_in_shader;
     std::vector<LineOnBox> m_lines;
 };
 
@@ -253,6 +332,11 @@ LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthe
 
 double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box, double tol) {
     return BoxBound(map, shapes, tol > 0 ? std::min(tol, kFineEnough) : kFineEnough).of(box);
+}
+
+double shader_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box,
+                    std::size_t most_boxes) {
+    return BoxBound(map, shapes, 0, true).worst_first(box, most_boxes);
 }
 
 }  // namespace anamorph

@@ -25,4 +25,9 @@ LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthe
 /// cannot be.
 double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box, double tol);
 
+/// The same for the formula as a shader computes it in floats, of lines whose numbers are floats (morph/feature_glsl.h). Proven for
+/// shaders that round as GLSL 4.1 and later demand, 4.7.1 of its specification. Refined by at most so many parts of the box.
+double shader_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box,
+                    std::size_t most_boxes);
+
 }  // namespace anamorph

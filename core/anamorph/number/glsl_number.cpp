@@ -120,6 +120,10 @@ GlslNumber exp(const GlslNumber& a) {
 GlslNumber log(const GlslNumber& a) {
     return a.is_constant() ? GlslNumber(std::log(a.constant())) : call("log", a);
 }
+GlslNumber pow(const GlslNumber& a, const GlslNumber& b) {
+    if (!text_of(a, b)) return std::pow(a.constant(), b.constant());
+    return call("pow", a, b);
+}
 GlslNumber asinh(const GlslNumber& a) {
     return a.is_constant() ? GlslNumber(std::asinh(a.constant())) : call("anamorphAsinh", a);
 }

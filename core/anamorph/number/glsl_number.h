@@ -76,6 +76,8 @@ void sin_cos(const GlslNumber& a, GlslNumber& s, GlslNumber& c);
 GlslNumber atan2(const GlslNumber& y, const GlslNumber& x);
 GlslNumber exp(const GlslNumber& a);
 GlslNumber log(const GlslNumber& a);
+/// a^b, of a above 0.
+GlslNumber pow(const GlslNumber& a, const GlslNumber& b);
 GlslNumber asinh(const GlslNumber& a);
 GlslNumber min(const GlslNumber& a, const GlslNumber& b);
 GlslNumber max(const GlslNumber& a, const GlslNumber& b);

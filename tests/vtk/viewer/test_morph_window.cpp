@@ -162,6 +162,98 @@ TEST_F(VtkMorphWindow, PlaysAndSteps) {
     EXPECT_NEAR(window.slider("t").value(), 0.7, 1e-9);
 }
 
+TEST_F(VtkMorphWindow, TheCardDrawsWithinItsBound) {
+    constexpr Size kLarge{480, 360};
+    constexpr float kMost = 8;
+    write("a.exr", steep_picture(kLarge.width, kLarge.height, kMost));
+    write("b.exr", steep_picture(kLarge.width, kLarge.height, kMost));
+    std::string lines;
+    for (int i = 0; i < 24; ++i) {
+        const int x = 40 + 61 * (7 * i % 24) % 400, y = 30 + 47 * i % 290;
+        const auto at = [&](int dx, int dy) { return std::to_string(x + dx) + "," + std::to_string(y + dy); };
+        lines += at(0, 0) + "," + at(40, i) + "," + at(3 + i % 5, i % 7) + "," + at(44, i - 3) + "," +
+                 std::to_string(1 + i % 3) + "\n";
+    }
+    write("f.csv", lines);
+    const OIIO::ImageBuf a(path("a.exr")), b(path("b.exr"));
+    const auto expected = [&](const char* t, const char* weight_b) {
+        OIIO::ParamValueList options;
+        for (const auto& [key, value] :
+             std::vector<std::pair<std::string, std::string>>{{"features", path("f.csv")},
+                                                              {"t", t},
+                                                              {"weight_b", weight_b},
+                                                              {"filter", "bilinear"},
+                                                              {"tol", "0"}})
+            options.attribute(key, value);
+        return apply("morph", {&a, &b}, options);
+    };
+    for (const char* weight_b : {"2", "1", "0.5", "1.25", "0"}) {
+        SCOPED_TRACE(weight_b);
+        MorphWindow window(path("a.exr") + ".morph?b=" + path("b.exr") + "&features=" + path("f.csv") +
+                           "&filter=bilinear&t=0.25&weight_b=" + weight_b);
+        window.draw_by_fragments(true);
+        prepare(window, 1500, 460);
+        ASSERT_EQ(window.pane(2).drawn_size(), kLarge) << "pixel for pixel";
+        EXPECT_GT(window.bound(), 1e-6);
+        EXPECT_LT(window.bound(), 0.2);
+        const Steep found = compare_steep(window, 2, expected("0.25", weight_b), 2 * kMost, window.bound());
+        EXPECT_EQ(found.misfits, 0) << window.bound();
+        EXPECT_GT(found.measured, 1000);
+        // Far below the bound it still fits nearly everywhere; a little later in the morph it does not.
+        EXPECT_LT(compare_steep(window, 2, expected("0.25", weight_b), 2 * kMost, 1e-3).misfits, 20);
+        EXPECT_GT(compare_steep(window, 2, expected("0.27", weight_b), 2 * kMost, 1e-3).misfits, 1000);
+    }
+}
+
+TEST_F(VtkMorphWindow, TheCardFollowsDragsAndSliders) {
+    write_all();
+    MorphWindow window(recipe("f.csv", "&t=0.25&pin_border=1&filter=bilinear"));
+    prepare_all(window);
+    key(window, "v");
+    const test::Display at = display(window, 0, {60, 20});
+    drag(window, at, {at[0] + 12, at[1] - 8});
+    key(window, "period");
+    EXPECT_EQ(window.error(), "");
+    EXPECT_THAT(window.status(), HasSubstr("by fragments"));
+    const auto card = shown(window);
+    key(window, "v");
+    const auto core = shown(window);
+    int most = 0;
+    for (std::size_t i = 0; i < card.size(); ++i) {
+        // But for the line of words.
+        if (i < 36 * 630) continue;
+        for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(card[i][c] - core[i][c]));
+    }
+    EXPECT_LE(most, 1);
+}
+
+TEST_F(VtkMorphWindow, WhatNoCardDrawsIsSaid) {
+    write_all();
+    for (const auto& [more, message] :
+         std::vector<std::pair<std::string, std::string>>{{"&filter=bicubic", "filters other than"},
+                                                          {"&output=lines", "another output"},
+                                                          {"&scheme=hardware", "scheme=hardware"}}) {
+        MorphWindow window(recipe("f.csv", "&t=0.25&wrap=clamp" + more));
+        prepare_all(window);
+        key(window, "v");
+        EXPECT_THAT(window.error(), HasSubstr("a graphics card does not draw "));
+        EXPECT_THAT(window.error(), HasSubstr(message));
+        key(window, "v");
+        window.window()->Render();
+        EXPECT_EQ(window.error(), "");
+    }
+    std::string lines;
+    for (int i = 0; i < 193; ++i) {
+        const std::string y = std::to_string(i / 3.0);
+        lines += "10," + y + ",60," + y + ",12," + y + ",62," + y + "\n";
+    }
+    write("many.csv", lines);
+    MorphWindow window(recipe("many.csv"));
+    prepare_all(window);
+    key(window, "v");
+    EXPECT_THAT(window.error(), HasSubstr("features of 193 lines: must have at most 192"));
+}
+
 TEST_F(VtkMorphWindow, SvgIsOpenedByItsPicturesAndSaved) {
     write_all();
     // The lower layer is of b.

@@ -336,6 +336,179 @@ TEST_F(VtkWarpWindow, ChangesAreNotLostInSilence) {
     EXPECT_TRUE(saved->ended());
 }
 
+TEST_F(VtkWarpWindow, TheCardDrawsWithinItsBound) {
+    constexpr Size kLarge{800, 600};
+    constexpr float kMost = 100;
+    write("p.exr", steep_picture(kLarge.width, kLarge.height, kMost));
+    write("m.json", mesh_json(mesh()));
+    ControlMesh moved = mesh();
+    for (Point<double>& vertex : moved.vertices) vertex.x += 0.002 / kLarge.width;
+    write("moved.json", mesh_json(moved));
+    const auto expected = [&](const std::string& file) {
+        const OIIO::ImageBuf source(path("p.exr"));
+        OIIO::ParamValueList options;
+        options.attribute("mesh", path(file));
+        options.attribute("filter", "bilinear");
+        options.attribute("tol", "0");
+        return apply("warp", {&source}, options);
+    };
+    WarpWindow window(path("p.exr") + ".warp?mesh=" + path("m.json") + "&filter=bilinear");
+    window.draw_by_fragments(true);
+    prepare(window, 1640, 700);
+    key(window, "g");
+    ASSERT_EQ(window.pane(1).drawn_size(), kLarge) << "pixel for pixel";
+    EXPECT_THAT(window.status(), HasSubstr("by fragments"));
+    EXPECT_GT(window.bound(), 1e-6);
+    EXPECT_LT(window.bound(), 5e-4);
+    const Steep found = compare_steep(window, 1, expected("m.json"), 2 * kMost, window.bound());
+    EXPECT_EQ(found.misfits, 0);
+    EXPECT_GT(found.measured, 1000) << "to a 5000th of a texel";
+    EXPECT_GT(compare_steep(window, 1, expected("moved.json"), 2 * kMost, window.bound()).misfits, 500)
+        << "it would notice";
+    // Drawn by the core again, it is what it was.
+    key(window, "v");
+    EXPECT_EQ(compare_steep(window, 1, expected("m.json"), 2 * kMost, 0.01).misfits, 0);
+    EXPECT_THAT(window.status(), HasSubstr("(tol 0.01)"));
+}
+
+TEST_F(VtkWarpWindow, TheCardReadsImagesAsTheCoreDoes) {
+    write("p.png", picture(kPicture.width, kPicture.height));
+    ControlMesh far = mesh();
+    // Beyond all edges, turned over in part, by more than the image's size.
+    for (Point<double>& vertex : far.vertices)
+        vertex = {2.6137 * vertex.x - 0.8071, 0.5 - 2.2217 * (vertex.y - 0.5113)};
+    far.levels[0].vertices[0].at = {0.3019, 0.4007};
+    write("m.json", mesh_json(far));
+    for (const char* wrap : {"black", "clamp", "periodic", "mirror"})
+        for (const char* filter : {"bilinear", "nearest"}) {
+            SCOPED_TRACE(std::string(wrap) + " " + filter);
+            const OIIO::ImageBuf source(path("p.png"));
+            OIIO::ParamValueList options;
+            options.attribute("mesh", path("m.json"));
+            options.attribute("filter", filter);
+            options.attribute("wrap", wrap);
+            options.attribute("tol", "0");
+            WarpWindow window(recipe(std::string("&wrap=") + wrap + "&filter=" + filter));
+            window.draw_by_fragments(true);
+            prepare(window, 640, 300);
+            key(window, "g");
+            EXPECT_LE(off(window, 1, apply("warp", {&source}, options)), 1);
+            // Larger, in part, and moved.
+            event(window, vtkCommand::MouseWheelForwardEvent, {500, 170});
+            event(window, vtkCommand::MiddleButtonPressEvent, {500, 170});
+            event(window, vtkCommand::MouseMoveEvent, {470, 180});
+            event(window, vtkCommand::MiddleButtonReleaseEvent, {470, 180});
+            const std::array<int, 3> card = shown_at(window, {450, 150});
+            key(window, "v");
+            const std::array<int, 3> core = shown_at(window, {450, 150});
+            for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(card[c], core[c], 2);
+        }
+}
+
+TEST_F(VtkWarpWindow, TheCardAveragesWhatItShowsSmaller) {
+    constexpr Size kLarge{960, 720};
+    write("p.png", picture(kLarge.width, kLarge.height));
+    write("m.json", mesh_json(mesh()));
+    WarpWindow window(recipe("&wrap=clamp"));
+    window.draw_by_fragments(true);
+    prepare(window, 640, 300);
+    key(window, "g");
+    const Size drawn_size = window.pane(1).drawn_size();
+    EXPECT_LT(3 * drawn_size.width, kLarge.width);
+    const OIIO::ImageBuf source(path("p.png"));
+    OIIO::ParamValueList options;
+    options.attribute("mesh", path("m.json"));
+    options.attribute("size", std::to_string(drawn_size.width) + "x" + std::to_string(drawn_size.height));
+    options.attribute("wrap", "clamp");
+    EXPECT_LE(off(window, 1, apply("warp", {&source}, options)), 8) << "not by the same weights";
+}
+
+TEST_F(VtkWarpWindow, TheCardFollowsDragsAndCuts) {
+    write_all();
+    const auto window = open("&filter=bilinear");
+    key(*window, "v");
+    EXPECT_TRUE(window->draws_by_fragments());
+    const test::Display at = display_of(*window, {0, 2, 1});
+    drag(*window, at, {at[0] + 18, at[1] - 12});
+    key(*window, "c", false, false, display(*window, 0, {90, 20}));
+    EXPECT_EQ(window->error(), "");
+    key(*window, "s", true);
+    key(*window, "g");
+    const OIIO::ImageBuf source(path("p.png"));
+    OIIO::ParamValueList options;
+    options.attribute("mesh", path("m.json"));
+    options.attribute("filter", "bilinear");
+    options.attribute("tol", "0");
+    EXPECT_LE(off(*window, 1, apply("warp", {&source}, options)), 1);
+    key(*window, "z", true);
+    key(*window, "v");
+    key(*window, "z", true);
+    write_all();
+    EXPECT_EQ(off(*window, 1, apply("warp", {&source}, options)), 0)
+        << "the core draws all that changed since";
+}
+
+TEST_F(VtkWarpWindow, WhatIsDrawnInPartsIsAsDrawnWhole) {
+    constexpr unsigned kSeed = 552;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    write_all();
+    for (const bool by_fragments : {false, true}) {
+        const auto window = open("&filter=bilinear");
+        window->draw_by_fragments(by_fragments);
+        int parts = 0;
+        for (int i = 0; i < 24; ++i) {
+            const auto& points = window->editor().points();
+            const test::Display at = display(*window, 0, points[random() % points.size()].at);
+            const test::Display to{at[0] + int(random() % 41) - 20, at[1] + int(random() % 41) - 20};
+            if (i % 6 == 5) key(*window, "c", false, false, to);
+            event(*window, vtkCommand::LeftButtonPressEvent, at, nullptr, i % 3 == 1);
+            event(*window, vtkCommand::MouseMoveEvent, to);
+            parts += window->drawn_area() > 0 && window->drawn_area() < 640 * 300 / 2;
+            const auto in_parts = shown(*window);
+            // As if nothing were known of what was drawn.
+            window->draw_by_fragments(by_fragments);
+            const auto whole = shown(*window);
+            int differ = 0;
+            for (std::size_t k = 24 * 640; k < whole.size(); ++k) differ += whole[k] != in_parts[k];
+            EXPECT_EQ(differ, 0) << i;
+            if (i % 4 == 3) key(*window, "Escape");
+            event(*window, vtkCommand::LeftButtonReleaseEvent, to);
+        }
+        EXPECT_GT(parts, 8);
+    }
+}
+
+TEST_F(VtkWarpWindow, WhatNoCardDrawsIsSaid) {
+    write_all();
+    for (const auto& [more, message] : std::vector<std::pair<std::string, std::string>>{
+             {"&direction=push", "meshes that push"},
+             {"&filter=bicubic", "filters other than nearest, bilinear"},
+             {"&scheme=hardware", "scheme=hardware"},
+             {"&scheme=residual", "scheme=residual"},
+             {"&output=stmap", "another output than color"},
+             {"&output=mesh", "another output than color"}}) {
+        SCOPED_TRACE(more);
+        const auto window = open(more);
+        key(*window, "v");
+        EXPECT_THAT(window->error(), HasSubstr("a graphics card does not draw "));
+        EXPECT_THAT(window->error(), HasSubstr(message));
+        key(*window, "v");
+        window->window()->Render();
+        EXPECT_EQ(window->error(), "");
+    }
+    ControlMesh fine;
+    fine.units = Units::fractions;
+    fine.columns = fine.rows = 200;
+    for (int r = 0; r <= 200; ++r)
+        for (int c = 0; c <= 200; ++c) fine.vertices.push_back({c / 200.0, r / 200.0});
+    write("m.json", mesh_json(fine));
+    write("p.png", picture(400, 300));
+    const auto window = open("", 900, 340);
+    key(*window, "v");
+    EXPECT_THAT(window->error(), HasSubstr("a mesh of 40000 cells: must have at most 16384"));
+}
+
 TEST_F(VtkWarpWindow, WhatCannotBeDrawnIsSaidAndTheMeshStays) {
     write_all();
     const auto window = open();
@@ -374,6 +547,10 @@ TEST_F(VtkWarpWindow, TheProgramWritesItsWindowAndSaysWhatIsWrong) {
              {p + path("m.json") + "&tolerance=1", "tolerance"},
              {path("p.png"), "is not a recipe's name"},
              {path("p.png") + ".pano?to=fisheye", "a recipe of .pano has no mesh: must be one that has"},
+             {p + path("m.json") + "&filter=bicubic --draw fragments --picture " + path("x.png"),
+              "a graphics card does not draw by filters other than"},
+             {p + path("m.json") + " --draw paper --picture " + path("x.png"),
+              "draw=paper: must be picture or fragments"},
              {p + path("m.json") + " --picture " + path("none/x.png"), "x.png"}}) {
         const std::size_t space = arguments.find(" --");
         const auto [failed, said] =

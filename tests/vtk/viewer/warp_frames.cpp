@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames a second of anamorph-warp while points are dragged: warp_frames RECIPE [FRAMES]. Of a .morph, the first point of its first line. Each frame is an event of the mouse, and ends
-// when the window shows what it did. Twice: with OpenGL, and without, which leaves all that is not the graphics card's.
+// Frames a second of anamorph-warp while points are dragged: warp_frames RECIPE [FRAMES [fragments]]. Of a .morph, the first point of its
+// first line. Each frame is an event of the mouse, and ends when the window shows what it did. Three times: without OpenGL, which leaves
+// all that is not the graphics card's; with it; and, of a window of VTK that has nothing to show, what is left when ours is taken away.
 #include <morph_window.h>
 #include <sys/resource.h>
 #include <vtkCommand.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
 #include <warp_window.h>
 
 #include <chrono>
@@ -23,6 +26,11 @@ double processor_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+void report(const std::string& what, int frames, double seconds, double processor) {
+    std::printf("%s: %.1f frames a second, %.1f ms a frame, %.1f ms of processor time\n", what.c_str(),
+                frames / seconds, 1e3 * seconds / frames, 1e3 * processor / frames);
+}
+
 void event(EditWindow& window, unsigned long id, double x, double y, const char* key = nullptr) {
     window.interactor()->SetEventInformation(int(x), int(y), 0, 0, 0, 0, key);
     window.interactor()->InvokeEvent(id);
@@ -37,12 +45,11 @@ void measure(const char* what, EditWindow& window, double x, double y, int frame
     for (int i = 1; i <= frames; ++i) {
         const double turn = 2 * M_PI * i / 40;
         event(window, vtkCommand::MouseMoveEvent, x + 25 * std::sin(turn), y + 25 * std::cos(turn));
-        if (!with_opengl) window.pane(0).renderer()->InvokeEvent(vtkCommand::StartEvent);
+        if (!with_opengl) window.window()->InvokeEvent(vtkCommand::StartEvent);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::printf("%s, %s OpenGL: %.1f frames a second, %.1f ms of processor time a frame\n", what,
-                with_opengl ? "with" : "without", frames / seconds,
-                1e3 * (processor_seconds() - processor) / frames);
+    report(std::string(what) + (with_opengl ? ", with OpenGL" : ", without"), frames, seconds,
+           processor_seconds() - processor);
     window.interactor()->SetEnableRender(true);
     event(window, vtkCommand::KeyPressEvent, x, y, "Escape");
 }
@@ -63,15 +70,33 @@ anamorph::Point<double> middle_point(anamorph_editor::WarpWindow& window) {
     return at;
 }
 
-void prepare(EditWindow& window) {
-    window.window()->SetSize(1600, 860);
+constexpr int kWidth = 1600, kHeight = 860;
+
+/// A window of VTK of the same size with nothing to show.
+void measure_nothing(int frames) {
+    vtkNew<vtkRenderer> renderer;
+    vtkNew<vtkRenderWindow> window;
+    window->SetMultiSamples(0);
+    window->SetSize(kWidth, kHeight);
+    window->AddRenderer(renderer);
+    window->Render();
+    const double processor = processor_seconds();
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < frames; ++i) window->Render();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report("a window with nothing to show", frames, seconds, processor_seconds() - processor);
+}
+
+void prepare(EditWindow& window, bool by_fragments) {
+    window.draw_by_fragments(by_fragments);
+    window.window()->SetSize(kWidth, kHeight);
     window.window()->Render();
     window.interactor()->Initialize();
 }
 
-void measure_warp(const char* recipe, int frames) {
+void measure_warp(const char* recipe, int frames, bool by_fragments) {
     anamorph_editor::WarpWindow window(recipe);
-    prepare(window);
+    prepare(window, by_fragments);
     const auto at = middle_point(window);
     for (const bool with_opengl : {false, true}) {
         measure("one point", window, at.x, at.y, frames, with_opengl);
@@ -81,9 +106,9 @@ void measure_warp(const char* recipe, int frames) {
     }
 }
 
-void measure_morph(const char* recipe, int frames) {
+void measure_morph(const char* recipe, int frames, bool by_fragments) {
     anamorph_editor::MorphWindow window(recipe);
-    prepare(window);
+    prepare(window, by_fragments);
     anamorph_editor::Pane& pane = window.pane(0);
     const auto at = pane.to_renderer(window.editor().at({0, 0, 0}));
     const int* corner = pane.renderer()->GetOrigin();
@@ -96,6 +121,10 @@ void measure_morph(const char* recipe, int frames) {
 int main(int argc, char** argv) {
     if (argc < 2) return 1;
     const int frames = argc > 2 ? std::atoi(argv[2]) : 200;
-    std::string(argv[1]).find(".morph") != std::string::npos ? measure_morph(argv[1], frames)
-                                                             : measure_warp(argv[1], frames);
+    const bool by_fragments = argc > 3 && std::string(argv[3]) == "fragments";
+    if (std::string(argv[1]).find(".morph") != std::string::npos)
+        measure_morph(argv[1], frames, by_fragments);
+    else
+        measure_warp(argv[1], frames, by_fragments);
+    measure_nothing(frames);
 }

@@ -140,6 +140,50 @@ class WindowTest : public testing::Test {
             }
         return most;
     }
+    /// A picture of floats that alternate from texel to texel between -most and most, red along rows and green down columns: read bilinearly
+    /// it changes by at most 2 `most` a texel, and nearly everywhere lies beyond what a screen shows.
+    static OIIO::ImageBuf steep_picture(int width, int height, float most) {
+        OIIO::ImageBuf image(OIIO::ImageSpec(width, height, 3, OIIO::TypeFloat));
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const float pixel[3] = {x % 2 ? most : -most, y % 2 ? most : -most, 0.5f};
+                image.setpixel(x, y, pixel);
+            }
+        return image;
+    }
+    /// What a comparison of such a picture found.
+    struct Steep {
+        int misfits = 0;   ///< values that source points within the bound do not explain
+        int measured = 0;  ///< values that a screen tells apart from those beside them
+    };
+    /// Compares red and green of a pane, one pixel of the window for each, with values that change by at most `slope` a texel, where source
+    /// points are off by at most `bound`. A level is allowed for what the screen's curve is rounded by.
+    static Steep compare_steep(EditWindow& window, std::size_t pane, const OIIO::ImageBuf& expected,
+                               double slope, double bound) {
+        EXPECT_FALSE(expected.has_error()) << expected.geterror();
+        // sRGB of IEC 61966-2-1.
+        const auto level = [](double v) {
+            v = std::min(std::max(v, 0.0), 1.0);
+            return 255 * (v > 0.0031308 ? 1.055 * std::pow(v, 1 / 2.4) - 0.055 : 12.92 * v);
+        };
+        const std::vector<std::array<int, 3>> colors = shown(window);
+        const int width = window.window()->GetSize()[0];
+        Steep found;
+        for (int y = 0; y < expected.spec().height; ++y)
+            for (int x = 0; x < expected.spec().width; ++x) {
+                const Display at = display(window, pane, {x + 0.5, y + 0.5});
+                float pixel[4];
+                expected.getpixel(x, y, pixel, 3);
+                for (std::size_t c = 0; c < 2; ++c) {
+                    const int seen = colors[static_cast<std::size_t>(at[1] * width + at[0])][c];
+                    const double value = double(pixel[c]);
+                    found.misfits += seen < level(value - slope * bound) - 1.5 ||
+                                     seen > level(value + slope * bound) + 1.5;
+                    found.measured += seen > 0 && seen < 255;
+                }
+            }
+        return found;
+    }
     /// Runs a program. Returns what it ended with, and what it said.
     std::pair<int, std::string> run(const std::string& program, const std::string& arguments) const {
         const int status =
