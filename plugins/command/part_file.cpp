@@ -66,7 +66,7 @@ struct PartHead {
 
     std::string text() const {
         const std::string xml = spec.to_xml();
-        const TileGrid tiles(spec);
+        const TileGrid tiles = tiles_of(spec);
         return std::string(kFirstLine) + "\nrecipe " + recipe + "\nstate " + state + "\npart " +
                std::to_string(share.index) + " " + std::to_string(share.count) + "\nspec " +
                std::to_string(xml.size()) + "\n" + xml + "\ntiles " +
@@ -96,7 +96,7 @@ class ManifestReader {
             m.head.share.index > m.head.share.count || m.head.share.count > kMostParts)
             refuse("its part is none of I of N");
         read_spec(m.head.spec);
-        const TileGrid tiles(m.head.spec);
+        const TileGrid tiles = tiles_of(m.head.spec);
         m.begin = m.head.share.begin(tiles.count());
         m.end = m.head.share.end(tiles.count());
         if (after("tiles ") != std::to_string(m.end - m.begin))
@@ -219,7 +219,7 @@ class OpenFile {
 
 /// How many of the tiles that a manifest names stand in the file with their hashes, from the first on, and how many bytes they are.
 std::pair<std::size_t, std::size_t> intact(const OpenFile& file, const Manifest& m) {
-    const TileGrid tiles(m.head.spec);
+    const TileGrid tiles = tiles_of(m.head.spec);
     std::vector<std::byte> pixels;
     std::size_t bytes = 0;
     for (std::size_t k = 0; k < m.written.size(); ++k) {
@@ -227,7 +227,8 @@ std::pair<std::size_t, std::size_t> intact(const OpenFile& file, const Manifest&
         pixels.resize(bytes_of(m.head.spec, box));
         const std::size_t row = pixels.size() / static_cast<std::size_t>(box.height());
         if (!file.read(pixels.data(), pixels.size()) ||
-            hash_of_tile(m.head.spec, pixels.data(), row, box.width(), box.height()) != m.written[k])
+            hashed_picture(m.head.spec).hash_of_tile(pixels.data(), row, box.width(), box.height()) !=
+                m.written[k])
             return {k, bytes};
         bytes += pixels.size();
     }
@@ -299,7 +300,7 @@ void write_picture(const ImageSpec& picture, const std::string& output,
     if (!out) throw Error(OIIO::geterror());
     OutputFile file(output);
     if (!out->open(file.path(), spec)) throw Error(printable(output) + ": " + out->geterror());
-    const TileGrid tiles(spec);
+    const TileGrid tiles = tiles_of(spec);
     std::vector<std::byte> pixels(spec.pixel_bytes(true) * static_cast<std::size_t>(spec.width) *
                                   TileGrid::kSide);
     for (std::int64_t row = 0; row < tiles.rows(); ++row) {
@@ -347,7 +348,7 @@ std::int64_t draw_part(const std::string& recipe, const Share& share, const std:
     PartHead head{one_line(recipe), digits_of(recipe + "\n" + picture->state()), share,
                   single_spec(*picture, recipe)};
     const ImageSpec& spec = head.spec;
-    const TileGrid tiles(spec);
+    const TileGrid tiles = tiles_of(spec);
     const std::string name = manifest_of(file);
     expect_part_or_nothing(file);
     const OpenFile pixels(file, O_RDWR | O_CREAT);
@@ -373,8 +374,8 @@ std::int64_t draw_part(const std::string& recipe, const Share& share, const std:
                             from + stride * static_cast<std::size_t>(y), row);
             // A line of the manifest says that its tile is there.
             pixels.write(tile.data(), tile.size());
-            const std::string line =
-                tile_line(i + k, hash_of_tile(spec, tile.data(), row, part.width(), part.height()));
+            const std::string line = tile_line(
+                i + k, hashed_picture(spec).hash_of_tile(tile.data(), row, part.width(), part.height()));
             manifest.write(line.data(), line.size());
         }
     }
@@ -393,12 +394,12 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
     });
     const Manifest& first = parts.at(order[0]);
     const ImageSpec spec = first.head.spec;
-    const std::string text = picture_text(spec);
+    const std::string text = hashed_picture(spec).text();
     for (std::size_t k = 0; k < order.size(); ++k) {
         const Manifest& m = parts[order[k]];
         const std::string name = printable(files[order[k]]);
         if (m.head.share.count != first.head.share.count || m.head.recipe != first.head.recipe ||
-            picture_text(m.head.spec) != text)
+            hashed_picture(m.head.spec).text() != text)
             throw Error(name + " is a part of another picture than " + printable(files[order[0]]));
         if (m.head.state != first.head.state)
             throw Error(name +
@@ -419,9 +420,9 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
         throw Error("part " + std::to_string(order.size() + 1) + " of " +
                     std::to_string(first.head.share.count) + " is missing");
 
-    const TileGrid tiles(spec);
+    const TileGrid tiles = tiles_of(spec);
     FileHasher hasher;
-    hasher.begin(spec);
+    hasher.begin(hashed_picture(spec));
     std::size_t part = 0;
     std::unique_ptr<OpenFile> file;
     std::int64_t at = 0;
@@ -436,8 +437,9 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
         tile.resize(bytes_of(spec, box));
         const PictureHash& said = m.written[static_cast<std::size_t>(at - m.begin)];
         if (!file->read(tile.data(), tile.size()) ||
-            hash_of_tile(spec, tile.data(), tile.size() / static_cast<std::size_t>(box.height()), box.width(),
-                         box.height()) != said)
+            hashed_picture(spec).hash_of_tile(tile.data(),
+                                              tile.size() / static_cast<std::size_t>(box.height()),
+                                              box.width(), box.height()) != said)
             throw Error(printable(files[order[part]]) + ": tile " + std::to_string(at) +
                         " has not the hash " + hash_digits(said) + ": the file was changed or cut off");
         hasher.add(said);
@@ -460,7 +462,7 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
 void draw_picture_file(const std::string& recipe, const std::string& output) {
     const std::unique_ptr<PictureReader> picture = open_picture(recipe);
     const ImageSpec spec = single_spec(*picture, recipe);
-    const TileGrid tiles(spec);
+    const TileGrid tiles = tiles_of(spec);
     std::vector<std::byte> drawn;
     write_picture(spec, output, [&](std::int64_t row, std::vector<std::byte>& rows) {
         const std::int64_t end = (row + 1) * tiles.columns();

@@ -95,7 +95,7 @@ std::unique_ptr<PictureReader> open_picture(const std::string& name) {
 PictureHash hash_of(PictureReader& picture) {
     FileHasher hasher;
     for (int s = 0; s < picture.subimages(); ++s)
-        hasher.add_picture(picture.spec(s),
+        hasher.add_picture(hashed_picture(picture.spec(s)),
                            [&](const Box& box, std::byte* pixels) { picture.read(s, box, pixels); });
     return hasher.hash();
 }

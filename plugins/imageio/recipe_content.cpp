@@ -299,7 +299,7 @@ class RecipeContent final : public Content {
     /// The digits of the hash of a picture, drawn for it.
     std::string hash_of(int subimage) const {
         FileHasher hasher;
-        hasher.add_picture(level(subimage, 0).header,
+        hasher.add_picture(hashed_picture(level(subimage, 0).header),
                            [&](const Box& box, std::byte* pixels) { read(subimage, 0, box, pixels); });
         return hash_digits(hasher.hash());
     }

@@ -2,7 +2,6 @@
 // a b + c of floats, rounded once on every instruction set, against the C library's fma.
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -14,6 +13,7 @@
 #include "hwy/highway.h"
 
 #include "anamorph/number/fused-inl.h"
+#include "anamorph/number/portable.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::test::HWY_NAMESPACE {
@@ -77,15 +77,14 @@ void add_near_ties(Numbers& n, std::mt19937& random) {
 }
 
 void add_any_bits(Numbers& n, std::mt19937& random) {
-    const auto any = [&] { return std::bit_cast<float>(static_cast<std::uint32_t>(random())); };
+    const auto any = [&] { return bit_cast<float>(static_cast<std::uint32_t>(random())); };
     for (int i = 0; i < 200000; ++i) n.add(any(), any(), any());
     // As large as each other, so that much cancels.
     for (int i = 0; i < 200000; ++i) {
         const float a = any(), b = any();
         const float product = a * b;
         n.add(a, b,
-              -std::bit_cast<float>(std::bit_cast<std::uint32_t>(product) +
-                                    static_cast<std::uint32_t>(random() % 5)));
+              -bit_cast<float>(bit_cast<std::uint32_t>(product) + static_cast<std::uint32_t>(random() % 5)));
     }
 }
 
@@ -128,7 +127,7 @@ TEST(Fused, RoundsOnce) {
             for (std::size_t i = 0; i < count; ++i)
                 if (std::isnan(exact[i])
                         ? !std::isnan(out[i])
-                        : std::bit_cast<std::uint32_t>(out[i]) != std::bit_cast<std::uint32_t>(exact[i])) {
+                        : bit_cast<std::uint32_t>(out[i]) != bit_cast<std::uint32_t>(exact[i])) {
                     at = i;
                     ++wrong;
                 }

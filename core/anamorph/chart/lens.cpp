@@ -2,12 +2,12 @@
 #include "anamorph/chart/lens.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "anamorph/chart/lens_table.h"
 #include "anamorph/error.h"
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
@@ -121,7 +121,7 @@ LensModel LensModel::parse(std::string_view text, const std::string& parameter) 
         if (!seen.insert(key).second) throw Error(parameter, whole, std::string(key) + " must be given once");
         double& value = model.values[static_cast<std::size_t>(found - kind->values.begin())];
         const std::string_view number = part.substr(std::min(equals + 1, part.size()));
-        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+        const auto [end, error] = from_chars(number.data(), number.data() + number.size(), value);
         if (error != std::errc() || end != number.data() + number.size() ||
             !(std::fabs(value) <= LensModel::kMostValue))
             throw Error(parameter, whole,

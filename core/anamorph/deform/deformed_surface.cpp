@@ -163,7 +163,7 @@ void check_axis(const char* name, std::span<const double> values) {
 void check_grid(std::span<const double> u, std::span<const double> v) {
     check_axis("u", u);
     check_axis("v", v);
-    constexpr std::size_t kMostPoints = std::size_t{1} << 40;
+    constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 40;
     if (u.size() > kMostPoints / v.size())
         throw Error("u and v", std::to_string(u.size()) + "x" + std::to_string(v.size()) + " points",
                     "must be at most 2^40");
@@ -530,11 +530,12 @@ simd::PointTerm point_term(const Term& from, const DisplacementSum& sum) {
         term.inverse_extent_w = 1 / d.extent_w;
     }
     const Triple<double> direction = side_direction<double>(d);
-    if (term.has_side) std::ranges::copy(std::array{direction.x, direction.y, direction.z}, term.direction);
+    if (term.has_side)
+        term.direction[0] = direction.x, term.direction[1] = direction.y, term.direction[2] = direction.z;
     term.has_frame = d.has_frame();
     if (term.has_frame) {
         const auto turn = turn_of<double>(d);
-        for (std::size_t j = 0; j < 3; ++j) std::ranges::copy(turn[j], term.turn[j]);
+        for (std::size_t j = 0; j < 3; ++j) std::copy(std::begin(turn[j]), std::end(turn[j]), term.turn[j]);
         const glm::dvec3 reach = framed_reach(d);
         term.box[0] = 1 / reach.x;
         term.box[1] = 1 / reach.y;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -13,6 +12,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/formula/solid_program.h"
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
@@ -643,7 +643,7 @@ class Parser {
     Value literal() {
         double value = 0;
         const char* const first = m_text.data() + m_at;
-        const auto [end, error] = std::from_chars(first, m_text.data() + m_text.size(), value);
+        const auto [end, error] = from_chars(first, m_text.data() + m_text.size(), value);
         if (error != std::errc() || !std::isfinite(value)) fail("a number that double can hold");
         m_at += static_cast<std::size_t>(end - first);
         return m_maker.number(value);

@@ -194,7 +194,7 @@ bool WindowReader::get_copy(int level, int piece, const Box& box, Window& window
     std::vector<std::byte>& raw = alpha < 0 ? m_texels : m_raw;
     grow(raw, height * width * pixel + Window::kSlack);
     if (!Gather(m_source, m_border, level, piece, box, raw.data(), width * pixel).run()) return false;
-    window = {raw.data(), type, channels, width * pixel, box};
+    window = {raw.data(), type, channels, static_cast<std::ptrdiff_t>(width * pixel), box};
     if (alpha < 0) return true;
 
     const std::int64_t values = width * height * channels;
@@ -202,8 +202,8 @@ bool WindowReader::get_copy(int level, int piece, const Box& box, Window& window
     float* pixels = reinterpret_cast<float*>(m_texels.data());
     load_channels(raw.data(), type, values, pixels);
     for (std::int64_t i = 0; i < values; i += channels) associate_alpha(pixels + i, channels, alpha);
-    window = {m_texels.data(), PixelType::float32, channels, width * channels * std::int64_t{sizeof(float)},
-              box};
+    const std::int64_t row = width * channels * std::int64_t{sizeof(float)};
+    window = {m_texels.data(), PixelType::float32, channels, static_cast<std::ptrdiff_t>(row), box};
     return true;
 } catch (const std::exception&) {
     return false;

@@ -2,9 +2,9 @@
 #include "anamorph/machine/block_schedule.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph::machine {
@@ -170,7 +170,7 @@ class FrameRun {
 /// A number with so many digits behind the point, whatever the locale.
 std::string rounded(double value, int digits) {
     char text[64];
-    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr};
+    return {text, to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr};
 }
 
 /// The timeline of the first frames: a row for each stage, and below it one for each half of the buffer that it fills.

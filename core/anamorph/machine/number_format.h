@@ -3,13 +3,13 @@
 // is rounded to its format after every operation, with which formulas are read (number.h).
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
 
 #include "anamorph/number/number.h"
+#include "anamorph/number/portable.h"
 
 namespace anamorph::machine {
 
@@ -60,7 +60,7 @@ double nearest_normalised(const NumberFormat& format, double value, bool& beyond
 
 /// The power 2^exponent, from 2^-1022 to 2^1023.
 constexpr double power_of_2(int exponent) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+    return bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
 
 /// The nearest integer, ties to even, of a size of at most 2^51: the sum has no bits behind the point.
@@ -89,9 +89,9 @@ inline double nearest_integer(double value) {
         // What is cut off carries into the bits above it where it is more than half of their last one, or half and
         // that one is odd.
         const int cut = kDoubleFraction - format.fraction;
-        auto bits = std::bit_cast<std::uint64_t>(size);
+        auto bits = bit_cast<std::uint64_t>(size);
         bits += (std::uint64_t{1} << (cut - 1)) - 1 + (bits >> cut & 1);
-        rounded = std::bit_cast<double>(bits >> cut << cut);
+        rounded = bit_cast<double>(bits >> cut << cut);
     }
     if (rounded >= power_of_2(bias + 1)) {
         beyond = true;

@@ -19,6 +19,7 @@
 // behind, beside as far as 2^11), so that they err by u (|value| + 1/64) and the 11 R above is kFineRounding.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace anamorph::simd {

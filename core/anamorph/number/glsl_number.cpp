@@ -2,9 +2,10 @@
 #include "anamorph/number/glsl_number.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
+
+#include "anamorph/number/portable.h"
 
 namespace anamorph {
 namespace {
@@ -16,7 +17,7 @@ std::string literal(double value) {
     constexpr double kMost = std::numeric_limits<float>::max();
     const auto kept = static_cast<float>(std::clamp(value, -kMost, kMost));
     char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, kept).ptr;
+    const auto end = to_chars(text, text + sizeof text, kept).ptr;
     std::string written(text, end);
     if (written.find_first_of(".e") == std::string::npos) written += ".0";
     return kept < 0 ? "(" + written + ")" : written;

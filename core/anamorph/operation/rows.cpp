@@ -2,7 +2,6 @@
 #include "anamorph/operation/rows.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include <string_view>
 
 #include "anamorph/image/source.h"
+#include "anamorph/number/portable.h"
 #include "anamorph/plan/scheme.h"
 
 namespace anamorph::rows {
@@ -169,7 +169,7 @@ std::optional<int> overscan_along(std::string_view text, int side) {
     const bool is_share = text.ends_with('%');
     if (is_share) text.remove_suffix(1);
     double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto [end, error] = from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size() || !(number >= 0)) return {};
     const double pixels = is_share ? std::round(number / 100 * side) : number;
     if (pixels > kMaxSide || pixels != std::floor(pixels)) return {};

@@ -2,7 +2,6 @@
 #include "anamorph/parameter/parameter.h"
 
 #include <algorithm>
-#include <charconv>
 #include <climits>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
@@ -69,14 +69,14 @@ std::optional<double> to_number(std::string_view text) {
     // from_chars takes no plus sign.
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
     return value;
 }
 
 std::optional<int> to_whole(std::string_view text) {
     int value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return {};
     return value;
 }
@@ -288,7 +288,7 @@ void make_printable(std::string& text) {
 template <class Number>
 std::string fewest_digits(Number value) {
     char text[64];
-    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    const auto [end, error] = to_chars(text, text + sizeof text, value);
     return error == std::errc() ? std::string(text, end) : std::string();
 }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph::text_file {
@@ -37,7 +37,7 @@ bool take_number(std::string_view& text, double& value) {
     const char* from = text.data();
     const char* end = from + text.size();
     if (from != end && *from == '+') ++from;
-    const auto [to, error] = std::from_chars(from, end, value);
+    const auto [to, error] = from_chars(from, end, value);
     if (error != std::errc()) return false;
     text.remove_prefix(static_cast<std::size_t>(to - text.data()));
     return true;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "anamorph/error.h"
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph::surface {
@@ -45,7 +45,7 @@ using PointBits = std::array<std::uint64_t, 5>;
 PointBits bits_of(const TexturedMesh& mesh, std::int64_t i) {
     const glm::dvec3& p = mesh.points[index_of(i)];
     const Texture& t = mesh.texture[index_of(i)];
-    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };
+    const auto bits = [](double x) { return bit_cast<std::uint64_t>(x + 0.0); };
     return {bits(p.x), bits(p.y), bits(p.z), bits(t.x), bits(t.y)};
 }
 
@@ -636,7 +636,7 @@ struct PointOnSide {
 };
 struct PointOnSideHash {
     std::size_t operator()(const PointOnSide& p) const {
-        std::uint64_t h = std::bit_cast<std::uint64_t>(p.at);
+        std::uint64_t h = bit_cast<std::uint64_t>(p.at);
         for (const std::int64_t id : {p.from, p.to})
             h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(id);
         return static_cast<std::size_t>(h * 0x9e3779b97f4a7c15u);

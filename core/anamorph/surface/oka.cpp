@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "anamorph/error.h"
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/surface/seen_range.h"
 
@@ -171,7 +171,7 @@ constexpr double kMostCondition = 0x1p30;
 
 /// A key that is the less the farther a depth is: its bits as a float.
 std::uint32_t far_first(double depth) {
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(depth));
+    const auto bits = bit_cast<std::uint32_t>(static_cast<float>(depth));
     return bits >> 31 ? bits : ~(bits | 0x80000000u);
 }
 

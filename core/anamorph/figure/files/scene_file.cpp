@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -19,6 +18,7 @@
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/body/surface_steps.h"
 #include "anamorph/figure/body/window_fit.h"
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/gltf_buffer.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
@@ -311,7 +311,7 @@ class Rows {
   private:
     template <class T>
     void put(T value) {
-        m_end = std::to_chars(m_number, std::end(m_number), value).ptr;
+        m_end = to_chars(m_number, std::end(m_number), value).ptr;
         m_text += ' ';
         m_text.append(m_number, m_end);
     }
@@ -409,7 +409,7 @@ class VtpText {
     template <class T>
     void put(T value) {
         char number[32];
-        text.append(number, std::to_chars(number, std::end(number), value).ptr) += ' ';
+        text.append(number, to_chars(number, std::end(number), value).ptr) += ' ';
     }
 };
 

@@ -2,10 +2,10 @@
 #include "anamorph/figure/language/script_lexer.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 
+#include "anamorph/number/portable.h"
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph::figure {
@@ -95,7 +95,7 @@ std::optional<double> read_script_number(std::string_view token, Dialect dialect
     if (digits.find_first_of("+-") != std::string::npos) return std::nullopt;
     double value = 0;
     const auto [end, error] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
+        from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
     if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
         return std::nullopt;
     return negative ? -value : value;

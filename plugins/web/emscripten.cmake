@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# What the preset web includes when it is configured for WebAssembly (CMAKE_PROJECT_TOP_LEVEL_INCLUDES): the libraries that the core needs,
+# of which it needs the headers that Debian has for this machine. They are linked beside each other in a folder, since /usr/include has
+# this machine's C library too.
+set(headers ${CMAKE_BINARY_DIR}/headers)
+file(MAKE_DIRECTORY ${headers})
+foreach(name boost gemmi glm hwy nlohmann pugiconfig.hpp pugixml.hpp xxh3.h xxhash.h)
+    if(NOT EXISTS /usr/include/${name})
+        message(FATAL_ERROR "/usr/include/${name} is missing: tests/install_packages.sh build web")
+    endif()
+    file(CREATE_LINK /usr/include/${name} ${headers}/${name} SYMBOLIC)
+endforeach()
+set(GEMMI_INCLUDE_DIR ${headers} CACHE PATH "")
+set(XXHASH_INCLUDE_DIR ${headers} CACHE PATH "")
+
+macro(anamorph_web_package method name)
+    if("${name}" MATCHES "^(glm|hwy|nlohmann_json|pugixml)$")
+        if(NOT TARGET ${name}::${name})
+            add_library(${name}::${name} INTERFACE IMPORTED GLOBAL)
+            target_include_directories(${name}::${name} INTERFACE ${headers})
+        endif()
+        set(${name}_FOUND TRUE)
+    endif()
+endmacro()
+cmake_language(SET_DEPENDENCY_PROVIDER anamorph_web_package SUPPORTED_METHODS FIND_PACKAGE)
+
+# Exceptions are WebAssembly's own: those that go through JavaScript cost every call. Highway has no doubles in WebAssembly's vectors,
+# but its plain code for vectors of 128 bits (EMU128) is made of them by the compiler.
+add_compile_options(-fwasm-exceptions -msimd128)
+add_link_options(-fwasm-exceptions)
+add_compile_definitions(HWY_COMPILE_ONLY_EMU128)

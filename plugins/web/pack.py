@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""pack.py SOURCE_DIR GLUE_JS WASM OUTPUT
+
+One file of the page: style, scripts, emscripten's glue, the core compressed, and the hashes that the desktop program has for its views.
+"""
+import base64
+import gzip
+import pathlib
+import sys
+
+# What the core may have on its way to a browser; 500 kB is what it should have.
+MOST_BYTES = 1_600_000
+
+
+def main():
+    source, glue, wasm, output = map(pathlib.Path, sys.argv[1:])
+    packed = gzip.compress(wasm.read_bytes(), 9, mtime=0)
+    if len(packed) > MOST_BYTES:
+        sys.exit(f"pack.py: {wasm} has {len(packed)} bytes compressed: must be at most {MOST_BYTES}")
+    parts = {
+        "style": (source / "style.css").read_text(encoding="utf-8"),
+        "known": (source / "hashes.txt").read_text(encoding="utf-8"),
+        "wasm": base64.b64encode(packed).decode(),
+        "worker": glue.read_text(encoding="utf-8") + (source / "worker.js").read_text(encoding="utf-8"),
+        "page": (source / "page.js").read_text(encoding="utf-8"),
+    }
+    page = (source / "index.html").read_text(encoding="utf-8")
+    for name, text in parts.items():
+        if "</script" in text:
+            sys.exit(f"pack.py: {name} ends its own script")
+        page = page.replace(f"@{name}@", text)
+    output.write_text(page, encoding="utf-8")
+    print(f"{output}: {len(page.encode())} bytes, the core {len(packed)} of {wasm.stat().st_size}")
+
+
+if __name__ == "__main__":
+    main()
