@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""anamorph help: what it prints is what the tables of keys in docs/ say."""
+"""anamorph help and completion: what they print is what the tables of keys in docs/ say."""
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -54,6 +55,47 @@ class Help(unittest.TestCase):
         for name in ("hash", "draw", "join", "explain"):
             self.assertEqual(run("help", name), run(name, "--help"))
             self.assertIn("Usage: anamorph " + name, run("help", name)[1])
+
+    def completed(self, *words):
+        status, page, error = run("complete", "--", *words)
+        self.assertEqual((status, error), (0, ""), words)
+        return page.split()
+
+    def test_completes_command_lines(self):
+        self.assertEqual(self.completed("anamorph", ""), sorted("help run doctor hash draw join explain".split()))
+        self.assertEqual(self.completed("/usr/bin/anamorph", "d"), ["doctor", "draw"])
+        self.assertEqual(self.completed("anamorph", "--v"), ["--version"])
+        self.assertEqual(self.completed("anamorph", "help", "m"), ["map", "morph", "mosaic"])
+        self.assertIn("--help", self.completed("anamorph-machine", "--"))
+        self.assertIn("svg", self.completed("anamorph-figure", ""))
+        self.assertIn("--fps", self.completed("anamorph-figure", "film", "--f"))
+        for words in (["anamorph"], ["oiiotool", ""], ["anamorph", "draw", ""], ["anamorph", "draw", "a.nothing?"], ["anamorph", "x"]):
+            self.assertEqual(self.completed(*words), [], words)
+        self.assertEqual(run("complete")[0], 1)
+
+    def test_completes_recipes_by_the_tables(self):
+        for name, rows in tables():
+            keys = sorted("%s.%s?%s=" % ("x", name, key) for key, *_ in rows)
+            found = self.completed("anamorph", "draw", "x.%s?" % name)
+            self.assertEqual(sorted(set(keys) - set(found)), [], name)
+        self.assertEqual(self.completed("anamorph", "draw", "v.pano?yaw=3&to=pan"), ["v.pano?yaw=3&to=pannini"])
+        self.assertEqual(self.completed("anamorph", "hash", "w.warp?mesh=m.json&src=(v.pano?filter=nea"),
+                         ["w.warp?mesh=m.json&src=(v.pano?filter=nearest"])
+        self.assertEqual(self.completed("anamorph", "hash", "w.warp?src=(v.pano?to=cubemap)&mes"), ["w.warp?src=(v.pano?to=cubemap)&mesh="])
+        self.assertEqual(self.completed("anamorph", "hash", "v.pano?yaw="), [])
+
+    def test_shells_complete(self):
+        folder = os.path.join(os.environ["ANAMORPH_DOCS"], "..", "core", "command", "completions")
+        environment = dict(os.environ, PATH=os.path.dirname(PROGRAM) + ":" + os.environ["PATH"])
+        lines = 'source "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _anamorph 2>/dev/null; printf "%s\\n" "${COMPREPLY[@]}"'
+        for words, expected in ((["anamorph", "dr"], ["draw"]), (["anamorph", "hash", "'v.pano?to=pan"], ["v.pano?to=pannini"])):
+            result = subprocess.run(["bash", "-c", lines, os.path.join(folder, "anamorph.bash"), *words], env=environment, capture_output=True,
+                                    text=True, timeout=50)
+            self.assertEqual(result.stdout.split(), expected, result.stderr)
+        if shutil.which("fish"):
+            result = subprocess.run(["fish", "-c", 'source $argv[1]; complete -C "anamorph dr"', os.path.join(folder, "anamorph.fish")],
+                                    env=environment, capture_output=True, text=True, timeout=50)
+            self.assertIn("draw", result.stdout.split(), result.stderr)
 
     def test_what_is_wrong_is_one_line(self):
         for arguments, message in (

@@ -14,14 +14,14 @@
 #include <vector>
 
 #include "anamorph/version.h"
+#include "completion.h"
 #include "doctor.h"
+#include "pictures_program.h"
 #include "plugin_place.h"
 #include "reference.h"
 
 namespace anamorph::command {
 namespace {
-
-constexpr std::string_view kOfPictures[] = {"hash", "draw", "join", "explain"};
 
 /// Becomes the program beside this one that has these subcommands. Throws Error where it cannot.
 void run_pictures(char** argv) {
@@ -58,6 +58,11 @@ int run(int argc, char** argv) {
     std::vector<std::string> words;
     command->add_option("COMMAND", words, "What to run, with its arguments")->required()->option_text("...");
     command->footer("anamorph run oiiotool view.pano -o view.jpg");
+    // For shells, which nobody types it for.
+    CLI::App* complete =
+        app.add_subcommand("complete", "Print what a command line may go on with")->group("");
+    std::vector<std::string> line;
+    complete->add_option("WORD", line, "Its words, from the program to the cursor")->required();
     CLI::App* doctor = app.add_subcommand("doctor", "Say what the hosts of this machine see of Anamorph");
     doctor->footer("The status is 1 where a host cannot read recipes, or load the filters that it has.");
     try {
@@ -68,6 +73,8 @@ int run(int argc, char** argv) {
         bool good = true;
         if (*doctor)
             good = examine_hosts(std::cout);
+        else if (*complete)
+            for (const std::string& word : completions(line)) std::cout << word << "\n";
         else
             print_help(operation);
         if (std::cout.flush()) return good ? 0 : 1;
