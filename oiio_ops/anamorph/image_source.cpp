@@ -8,10 +8,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <compare>
 #include <cstring>
 #include <map>
+#include <set>
 #include <string_view>
+#include <tuple>
 
 #include "anamorph/error.h"
 #include "anamorph/image/pixel.h"
@@ -23,6 +27,42 @@ namespace {
 using OIIO::ImageCache;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
+
+/// The tiles of the process that a cache could not read. It says so once: later it hands them out, and what is in them is by chance.
+class BrokenTiles {
+  public:
+    static BrokenTiles& instance() {
+        static auto& tiles = *new BrokenTiles;
+        return tiles;
+    }
+    /// A tile, by the number of its column and row. `file`: the name that the cache knows it by.
+    struct Tile {
+        OIIO::ustring file;
+        int subimage, level, column, row;
+
+        auto operator<=>(const Tile& other) const {
+            const auto members = [](const Tile& t) {
+                return std::tuple(t.file.c_str(), t.subimage, t.level, t.column, t.row);
+            };
+            return members(*this) <=> members(other);
+        }
+    };
+    void add(const Tile& tile) {
+        const std::lock_guard lock(m_mutex);
+        m_tiles.insert(tile);
+        m_any = true;
+    }
+    bool has(const Tile& tile) {
+        if (!m_any) return false;
+        const std::lock_guard lock(m_mutex);
+        return m_tiles.contains(tile);
+    }
+
+  private:
+    std::atomic<bool> m_any = false;
+    std::mutex m_mutex;
+    std::set<Tile> m_tiles;
+};
 
 /// One of a cache's thread records, borrowed. They are never destroyed: OpenImageIO 2.4 fails when one is and
 /// its statistics are asked for afterwards.
@@ -474,7 +514,18 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
         for (int x = box.x0; x < box.x1;) {
             ImageCache::Tile* tile =
                 m_cache->get_tile(image, thread, m_subimage, file_level, x + to_x, y + to_y, l.spec.z);
-            if (!tile) return fail(m_cache->geterror());
+            const bool tiled = l.spec.tile_width > 0 && l.spec.tile_height > 0;
+            const int column = tiled ? (x + to_x - l.spec.x) / l.spec.tile_width : 0,
+                      row = tiled ? (y + to_y - l.spec.y) / l.spec.tile_height : 0;
+            const BrokenTiles::Tile known{m_name, m_subimage, file_level, column, row};
+            if (!tile) {
+                BrokenTiles::instance().add(known);
+                return fail(m_cache->geterror());
+            }
+            if (BrokenTiles::instance().has(known)) {
+                m_cache->release_tile(tile);
+                return fail("a tile is damaged");
+            }
             const OIIO::ROI where = m_cache->tile_roi(tile);
             TypeDesc format;
             const auto* pixels = static_cast<const std::byte*>(m_cache->tile_pixels(tile, format));

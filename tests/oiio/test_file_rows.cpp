@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <thread>
 
@@ -146,6 +148,29 @@ TEST(FileRows, SayWhichFilesAreDamaged) {
         EXPECT_EQ(file.opened, before) << "each block would try again";
         std::filesystem::remove(name);
     }
+}
+
+using TiledSources = InFolder;
+
+// The cache tells of a tile that it cannot read once, and hands it out from then on.
+TEST_F(TiledSources, StayDamaged) {
+    ASSERT_EQ(
+        run("oiiotool --pattern noise 256x128 3 -d uint8 --tile 64 64 --compression zip -o good.tif").status,
+        0);
+    std::ifstream good("good.tif", std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(good), {}};
+    // There whole tiles are, compressed, but for the directory at the end.
+    std::fill(bytes.begin() + std::ssize(bytes) / 8, bytes.begin() + std::ssize(bytes) / 2, '\xff');
+    std::ofstream("bad.tif", std::ios::binary) << bytes;
+    const std::string lens = "bad.tif.lens?lens=3de4:k1=0&filter=bilinear";
+    std::vector<float> pixels(256 * 128 * 3);
+    for (const std::string& name : {lens, lens, lens + "&tol=0.02", std::string("v.map?src=bad.tif&u=x&v=y")})
+        for (int again = 0; again < 2; ++again) {
+            const auto input = open(name);
+            ASSERT_TRUE(input) << OIIO::geterror();
+            EXPECT_FALSE(input->read_image(0, 0, 0, 3, OIIO::TypeFloat, pixels.data())) << name << again;
+            EXPECT_THAT(input->geterror(), testing::HasSubstr("bad.tif")) << name << again;
+        }
 }
 
 using UntiledSources = InFolder;
