@@ -316,8 +316,8 @@ void explain(const std::string& recipe, const std::optional<std::string>& crop, 
     const Box all{header.x, header.y, header.x + header.width, header.y + header.height};
     const Box part = crop ? crop_of(*crop, all) : all, box = moved(part, -corner.x, -corner.y);
     line(to, "picture",
-         size_text(header.width, header.height) + ", " + std::to_string(header.nchannels) + " channels, " +
-             header.format.c_str() +
+         size_text(header.width, header.height) + ", " + std::to_string(header.nchannels) +
+             (header.nchannels == 1 ? " channel, " : " channels, ") + header.format.c_str() +
              (content->subimages() > 1 ? ", one of " + std::to_string(content->subimages()) : ""));
     if (crop) line(to, "part", box_text(part));
     for (const OIIO::ParamValue& said : spec.extra_attribs)
