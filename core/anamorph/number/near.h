@@ -67,8 +67,9 @@ struct Near {
     ANAMORPH_INLINE Near(double k) : base(k), rest(0.0) {}  // NOLINT: a number is one without a rest
     ANAMORPH_INLINE Near(const Base& b, const Rest& r) : base(b), rest(r) {}
 
-    /// A constant with an error of at most `error`, for pairs that keep track of it.
-    static Near near(double value, double error) requires requires { Pair::near(value, error); }
+    /// A constant with an error of at most `error`, for pairs that keep track of it. (Asked by the address: Clang would ask for a call
+    /// before a Near is complete, which is what it returns.)
+    static Near near(double value, double error) requires requires { &Pair::near; }
     { return Pair::near(value, error); }
 
     /// The number itself, base plus rest, as a rest.

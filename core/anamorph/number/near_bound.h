@@ -340,6 +340,9 @@ struct NearRest<WrittenBase, RestBound<Real>> {
 /// The number that writes down the bases of a formula, and bounds its rounding in Real near them.
 template <class Real>
 using NearBound = Near<WrittenBase, RestBound<Real>>;
+// Without it, measured() would leave the errors of constants out.
+static_assert(
+    requires { NearBound<float>::near(1.0, 0.5); } && requires { NearBound<double>::near(1.0, 0.5); });
 
 #undef ANAMORPH_INLINE
 
