@@ -28,55 +28,57 @@ using OIIO::ImageSpec;
 
 // Pictures are drawn in strips of so many rows.
 constexpr int kStrip = 256;
+// What is asked for of a source is kept by squares of so many texels.
+constexpr Size kSquare{32, 32};
 
-/// The part of a level's texels that was asked for: squares of 32 texels, as rows and columns of bits.
+/// The cells of a grid over a box that some of it was asked for in.
 class Touched {
   public:
-    static constexpr int kSide = 32;
-
-    explicit Touched(const Box& extent)
-        : m_extent(extent),
-          m_columns((extent.width() + kSide - 1) / kSide),
-          m_squares(static_cast<std::size_t>(m_columns) *
-                    static_cast<std::size_t>((extent.height() + kSide - 1) / kSide)) {}
+    /// Cells count from the corner of the box.
+    Touched(const Box& box, const Size& cell)
+        : m_box(box),
+          m_cell(cell),
+          m_columns((box.width() + cell.width - 1) / cell.width),
+          m_cells(static_cast<std::size_t>(m_columns) *
+                  static_cast<std::size_t>((box.height() + cell.height - 1) / cell.height)) {}
 
     void add(const Box& box) {
-        const Box part = intersection(box, m_extent);
+        const Box part = intersection(box, m_box);
         if (part.empty()) return;
-        for (int y = (part.y0 - m_extent.y0) / kSide; y <= (part.y1 - 1 - m_extent.y0) / kSide; ++y)
-            for (int x = (part.x0 - m_extent.x0) / kSide; x <= (part.x1 - 1 - m_extent.x0) / kSide; ++x)
-                m_squares[index(x, y)] = true;
+        for (int y = (part.y0 - m_box.y0) / m_cell.height; y <= (part.y1 - 1 - m_box.y0) / m_cell.height; ++y)
+            for (int x = (part.x0 - m_box.x0) / m_cell.width; x <= (part.x1 - 1 - m_box.x0) / m_cell.width;
+                 ++x)
+                m_cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(m_columns) +
+                        static_cast<std::size_t>(x)] = true;
     }
-    bool any() const { return std::ranges::find(m_squares, true) != m_squares.end(); }
-    /// Calls body(box) for each square that was asked for.
+    /// Calls body(cell) for those cells.
     template <class Body>
     void each(const Body& body) const {
-        for (std::size_t i = 0; i < m_squares.size(); ++i)
-            if (m_squares[i]) body(square(i));
+        for (std::size_t i = 0; i < m_cells.size(); ++i) {
+            if (!m_cells[i]) continue;
+            const int x = m_box.x0 + static_cast<int>(i % static_cast<std::size_t>(m_columns)) * m_cell.width,
+                      y = m_box.y0 +
+                          static_cast<int>(i / static_cast<std::size_t>(m_columns)) * m_cell.height;
+            body(intersection({x, y, x + m_cell.width, y + m_cell.height}, m_box));
+        }
     }
-    const Box& extent() const { return m_extent; }
+    std::int64_t count() const { return std::ranges::count(m_cells, true); }
+    std::size_t cells() const { return m_cells.size(); }
+    const Box& box() const { return m_box; }
 
   private:
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_columns) +
-               static_cast<std::size_t>(x);
-    }
-    Box square(std::size_t i) const {
-        const int x = m_extent.x0 + static_cast<int>(i % static_cast<std::size_t>(m_columns)) * kSide,
-                  y = m_extent.y0 + static_cast<int>(i / static_cast<std::size_t>(m_columns)) * kSide;
-        return intersection({x, y, x + kSide, y + kSide}, m_extent);
-    }
-
-    Box m_extent;
+    Box m_box;
+    Size m_cell;
     int m_columns;
-    std::vector<bool> m_squares;
+    std::vector<bool> m_cells;
 };
 
 /// A source like another one, all of whose texels are 0, which remembers what it was asked for.
 class BlankSource final : public Source {
   public:
     explicit BlankSource(const Source& like) : m_like(like) {
-        for (int level = 0; level < like.levels(); ++level) m_touched.emplace_back(like.extent(level));
+        for (int level = 0; level < like.levels(); ++level)
+            m_touched.emplace_back(like.extent(level), kSquare);
     }
 
     PixelType type() const noexcept override { return m_like.type(); }
@@ -247,20 +249,10 @@ std::string read_of(const ImageSpec& spec, const Touched& touched) {
         return "rows " + std::to_string(first) + " to " + std::to_string(end - 1) + " of " +
                std::to_string(spec.height) + ", " + bytes(double(end - first) * spec.width * pixel);
     }
-    const int width = spec.tile_width, height = spec.tile_height;
-    const int columns = (spec.width + width - 1) / width, rows = (spec.height + height - 1) / height;
-    std::vector<bool> found(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    touched.each([&](const Box& square) {
-        const Box part = in_data(square);
-        if (part.empty()) return;
-        for (int y = part.y0 / height; y <= (part.y1 - 1) / height; ++y)
-            for (int x = part.x0 / width; x <= (part.x1 - 1) / width; ++x)
-                found[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
-                      static_cast<std::size_t>(x)] = true;
-    });
-    const auto count = std::ranges::count(found, true);
-    return std::to_string(count) + " of " + std::to_string(found.size()) + " tiles, " +
-           bytes(double(count) * width * height * pixel);
+    Touched tiles(data, {spec.tile_width, spec.tile_height});
+    touched.each([&](const Box& square) { tiles.add(in_data(square)); });
+    return std::to_string(tiles.count()) + " of " + std::to_string(tiles.cells()) + " tiles, " +
+           bytes(double(tiles.count()) * spec.tile_width * spec.tile_height * pixel);
 }
 
 void tell_source(const SourceStack& stack, const BlankSource& blank, std::ostream& to) {
@@ -275,7 +267,7 @@ void tell_source(const SourceStack& stack, const BlankSource& blank, std::ostrea
     bool any = false;
     for (int level = 0; level < blank.levels(); ++level) {
         const Touched& touched = blank.touched()[static_cast<std::size_t>(level)];
-        if (!touched.any()) continue;
+        if (touched.count() == 0) continue;
         any = true;
         std::string text;
         if (as_stored) {
@@ -283,7 +275,7 @@ void tell_source(const SourceStack& stack, const BlankSource& blank, std::ostrea
         } else {
             double texels = 0;
             touched.each([&](const Box& square) { texels += double(square.width()) * square.height(); });
-            const Box& all = touched.extent();
+            const Box& all = touched.box();
             text = percent(texels, double(all.width()) * all.height()) + " of its texels";
         }
         line(to, "  level " + std::to_string(level), text);

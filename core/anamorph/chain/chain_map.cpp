@@ -64,7 +64,7 @@ bool ChainMap::misses(const Point<Interval>& box) const {
 bool ChainMap::meets_edge(const Point<Interval>& box) const {
     const Box& frame = m_pieces.frame();
     const auto is_within = [](const Interval& a, int from, int to) {
-        return a.lo >= from - kNegligible && a.hi <= to + kNegligible;
+        return a.lo >= from - EdgesOverBox::kNegligible && a.hi <= to + EdgesOverBox::kNegligible;
     };
     return !(m_outer->source_period() > 0 || is_within(box.x, frame.x0, frame.x1)) ||
            !(m_middle.has_poles || is_within(box.y, frame.y0, frame.y1));

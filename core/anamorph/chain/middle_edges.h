@@ -11,10 +11,6 @@
 
 namespace anamorph {
 
-/// What of a pixel lies beyond an edge by no more than this does not count, a 512th of its area: pictures that end together do so but for
-/// rounding, and for what bounds over boxes are too wide.
-inline constexpr double kNegligible = 0x1p-9;
-
 /// The part of a pixel on which functions are not negative, each linear: its value in the pixel's middle, and its derivatives per
 /// pixel. Exactly, but for rounding.
 PartialPixel part_within(int x, int y, std::span<const Jet1<double>> edges);
@@ -22,6 +18,10 @@ PartialPixel part_within(int x, int y, std::span<const Jet1<double>> edges);
 /// Edges over a box of pixels.
 class EdgesOverBox {
   public:
+    /// What of a pixel lies beyond an edge by no more than this does not count, a 512th of its area: pictures that end together do so but
+    /// for rounding, and for what bounds over boxes are too wide.
+    static constexpr double kNegligible = 0x1p-9;
+
     /// `middle`: each edge in the middle of the box; `over`: the same edges over the box, whose derivatives are bounds.
     EdgesOverBox(const Box& box, std::vector<Jet1<double>> middle, std::vector<Jet1<Interval>> over);
 

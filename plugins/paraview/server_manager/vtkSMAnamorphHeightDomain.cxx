@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkSMAnamorphHeightDomain.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vtkDataSetAttributes.h"
@@ -18,9 +19,9 @@ vtkStandardNewMacro(vtkSMAnamorphHeightDomain);
 namespace {
 
 constexpr double kShare = 0.1;  ///< of the plane's length
-constexpr double kOfLuminance[] = {0.2126, 0.7152, 0.0722};
 
-/// The distance from the least to the greatest height of an array, of a component, or of the luminance (-1).
+/// The distance from the least to the greatest height of an array, of a component, or at most of the luminance (-1), which is a mean of
+/// the first three.
 double range_of(vtkPVArrayInformation* heights, int component) {
     if (heights->GetDataType() != VTK_FLOAT && heights->GetDataType() != VTK_DOUBLE) return 1;
     const auto length = [&](int c) {
@@ -29,9 +30,7 @@ double range_of(vtkPVArrayInformation* heights, int component) {
     };
     if (component >= heights->GetNumberOfComponents()) return 1;
     if (component >= 0 || heights->GetNumberOfComponents() < 3) return length(component < 0 ? 0 : component);
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += kOfLuminance[c] * length(c);
-    return sum;
+    return std::max({length(0), length(1), length(2)});
 }
 
 }  // namespace
