@@ -94,6 +94,24 @@ Link pano_link(const View& source, const View& target, const Orientation& look, 
             chart.closed()};
 }
 
+/// A picture of the faces of a cube, which its reader takes for a flat one.
+Link faces_link(const View& source, const View& faces, const Orientation& look, const Settings& settings) {
+    Link link = pano_link(source, faces, look, settings);
+    link.truth = [source, faces, look](const Point<Real>& p) -> Point<Real> {
+        const Chart chart = oracle::chart_of(faces);
+        for (const Piece& face : chart.pieces()) {
+            const Box& box = face.box;
+            oracle::Vector ray{};
+            if (p.x >= box.x0 && p.x <= box.x1 && p.y >= box.y0 && p.y <= box.y1 &&
+                oracle::ray_of(faces, face, p.x, p.y, ray))
+                return oracle::point_of(source, oracle::chart_of(source).pieces()[0],
+                                        oracle::rotated(ray, look));
+        }
+        return {kNone, kNone};
+    };
+    return link;
+}
+
 Link mesh_link(unsigned seed, int cells, int levels, const Size& source, const Size& target,
                const Settings& settings) {
     test::Random random(seed);
@@ -521,6 +539,13 @@ std::vector<ChainCase> chain_cases() {
                                 lens_link("ptlens:b=-0.45", LensMode::undistort, plate, plate, s)};
          },
          0.8},
+        {"twirl of a cube's faces",
+         [=](const Settings& s) {
+             return std::vector{
+                 twirl_link({240, 160}, s),
+                 faces_link(sphere, view(Projection::cubemap3x2, {240, 160}, 90), {20, 10, 5}, s)};
+         },
+         1.01},  // no box of one face is worth its bound
         {"sphere of twirled plane",
          [=](const Settings& s) {
              return std::vector{pano_link(flat({300, 300}, 100),
