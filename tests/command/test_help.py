@@ -3,7 +3,6 @@
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import unittest
 
@@ -92,10 +91,10 @@ class Help(unittest.TestCase):
             result = subprocess.run(["bash", "-c", lines, os.path.join(folder, "anamorph.bash"), *words], env=environment, capture_output=True,
                                     text=True, timeout=50)
             self.assertEqual(result.stdout.split(), expected, result.stderr)
-        if shutil.which("fish"):
-            result = subprocess.run(["fish", "-c", 'source $argv[1]; complete -C "anamorph dr"', os.path.join(folder, "anamorph.fish")],
-                                    env=environment, capture_output=True, text=True, timeout=50)
-            self.assertIn("draw", result.stdout.split(), result.stderr)
+        lines = 'source $argv[1]; complete -C "anamorph dr"; complete -C "anamorph hash \\"v.pano?to=pan"; complete -C "anamorph-figure fi"'
+        result = subprocess.run(["fish", "-c", lines, os.path.join(folder, "anamorph.fish")], env=environment, capture_output=True, text=True,
+                                timeout=50)
+        self.assertEqual(result.stdout.split(), ["draw", "v.pano?to=pannini", "film"], result.stderr)
 
     def test_what_is_wrong_is_one_line(self):
         for arguments, message in (
