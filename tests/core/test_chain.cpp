@@ -514,6 +514,12 @@ std::vector<ChainCase> chain_cases() {
                  lens_link("ptlens:a=0.01,b=-0.03,c=0.02", LensMode::undistort, {300, 250}, {320, 260}, s),
                  mesh_link(8, 3, 1, plate, {300, 250}, s)};
          }},
+        {"pano of warp, along the lines of its cells",
+         [=](const Settings& s) {
+             return std::vector{pano_link(flat({65, 65}, 60), flat({65, 65}, 50), {0, 0, 0}, s),
+                                mesh_link(9, 2, 1, {65, 65}, {65, 65}, s)};
+         },
+         1.01},
         {"pano of pano, across the seam",
          [=](const Settings& s) {
              return std::vector{

@@ -38,13 +38,15 @@ CellMap::Form CellMap::form_of(const MeshCell& cell) const {
 }
 
 CellMap::Local CellMap::local_around(double x, double y, int piece) const {
-    return with_form(x, y, piece, [&](const Form& form) -> Local {
-        const MeshCell& cell = form.cell;
-        const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
-        Bicubic powers = restricted(form.powers, {(x - cell.x0) / w, 1 / w}, {(y - cell.y0) / h, 1 / h});
-        add_identity(powers, *m_mesh, {x, 1}, {y, 1});
-        return {cell, {x, y}, powers, form.rounding};
-    });
+    return with_form(x, y, piece, [&](const Form& form) { return local_of(form, x, y); });
+}
+
+CellMap::Local CellMap::local_of(const Form& form, double x, double y) const {
+    const MeshCell& cell = form.cell;
+    const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
+    Bicubic powers = restricted(form.powers, {(x - cell.x0) / w, 1 / w}, {(y - cell.y0) / h, 1 / h});
+    add_identity(powers, *m_mesh, {x, 1}, {y, 1});
+    return {cell, {x, y}, powers, form.rounding};
 }
 
 Cover CellMap::cover(const Interval& x, const Interval& y, int, const Local& local, bool) const {
@@ -77,8 +79,23 @@ bool CellMap::is_near(const Point<double>& p) {
     return std::fabs(p.x) < kFarthest && std::fabs(p.y) < kFarthest;
 }
 
-double CellMap::exact_error(const Interval& x, const Interval& y) const {
-    return exact_rounding_by_cells(*m_mesh, with_neighbors({x.lo, y.lo, x.hi, y.hi}));
+double CellMap::exact_error(const Interval& x, const Interval& y, double off) const {
+    const Bounds near = with_neighbors({x.lo, y.lo, x.hi, y.hi});
+    const double rounding = exact_rounding_by_cells(*m_mesh, near);
+    if (off == 0) return rounding;
+    // The way from where a point belongs to where it is computed leads from cell to cell, in which the map goes on: it moves by no more
+    // than the derivatives of all of them together, times that way.
+    using J = Jet<Interval, 1>;
+    double stretch = 0;
+    m_mesh->each_cell(near.x0, near.y0, near.x1, near.y1, [&](const MeshCell& cell) {
+        const Local local = local_of(form_of(cell), 0.5 * (x.lo + x.hi), 0.5 * (y.lo + y.hi));
+        const Point<J> p = polynomial(J::variable(x, 1, 0), J::variable(y, 0, 1), local);
+        for (const J& f : {p.x, p.y}) stretch += magnitude(f.c[1]) + magnitude(f.c[2]);
+        // The error of the polynomial, of degree 3 each way, has derivatives of at most 9 times its size on [-1, 1] (Markov).
+        const double side = std::min(cell.x1 - cell.x0, cell.y1 - cell.y0);
+        stretch += 4 * 9 * local.error / (side / 2);
+    });
+    return (stretch * off + rounding) * rounded_detail::kUp;
 }
 
 }  // namespace anamorph

@@ -70,8 +70,8 @@ class CellMap {
         return {powers.x[1][0], powers.y[1][0], powers.x[0][1], powers.y[0][1]};
     }
     template <class Real>
-    double exact_error(const Interval& x, const Interval& y, int) const {
-        return exact_error(x, y);
+    double exact_error(const Interval& x, const Interval& y, int, double off = 0) const {
+        return exact_error(x, y, off);
     }
 
   private:
@@ -88,7 +88,7 @@ class CellMap {
     }
     /// Is a point within what places are kept of?
     static bool is_near(const Point<double>& p);
-    double exact_error(const Interval& x, const Interval& y) const;
+    double exact_error(const Interval& x, const Interval& y, double off) const;
 
     /// What is made of a cell.
     struct Form {
@@ -98,6 +98,7 @@ class CellMap {
         double rounding;  ///< double_rounding()
     };
     Form form_of(const MeshCell& cell) const;
+    Local local_of(const Form& form, double x, double y) const;
     /// Those of pieces, each made when it is first asked for.
     struct Kept {
         std::once_flag once;
