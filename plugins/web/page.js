@@ -48,7 +48,7 @@ class Workers {
 
 let workers = null;
 const state = {
-  source: null, // name, width, height, file: the name in recipes, isSample
+  source: null, // name, width, height, file: the name in recipes, isSample: is it the panorama of which hashes are listed?
   mesh: null, // sixteen points, in parts of the picture
   projections: new Map(),
   shown: null, // what is drawn: recipe, rgba, width, height
@@ -469,7 +469,7 @@ function busy(text) {
 
 /// Our panorama: a small one first, which is there at once, then as it is meant.
 async function takeSample() {
-  const name = { name: "Our panorama", file: "panorama.png", isSample: true };
+  const name = { name: "Our panorama", file: "panorama.png", isSample: SAMPLE_HEIGHT === LISTED_HEIGHT };
   busy("Making the panorama…");
   state.source = null;
   await workers.askAll({ ask: "sample", height: 256 });
@@ -481,7 +481,9 @@ async function takeSample() {
   await takeImage(withAlpha(pixels), width, height, name);
   changed();
 }
-const SAMPLE_HEIGHT = Number(new URLSearchParams(location.search).get("sample")) || 2048;
+/// That of the panorama of which hashes are listed; tests ask for another.
+const LISTED_HEIGHT = 2048;
+const SAMPLE_HEIGHT = Number(new URLSearchParams(location.search).get("sample")) || LISTED_HEIGHT;
 
 function withAlpha(rgb) {
   const rgba = new Uint8ClampedArray((rgb.length / 3) * 4);

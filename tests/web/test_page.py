@@ -186,7 +186,18 @@ class Page(unittest.TestCase):
         self.assertEqual([u for u in urls if not u.startswith(("blob:", "data:", "file:"))], [])
         self.assertEqual([e for e in self.driver.get_log("browser") if e["level"] == "SEVERE"], [])
 
+    def test_views_of_the_list_are_the_desktops(self):
+        self.assertIn("not in the page’s list", self.text("verdict"))  # of this small panorama
+        self.driver.get(PAGE.as_uri())
+        self.hash()
+        self.assertIn("The same bits as the desktop program, which prints", self.text("verdict"))
+        self.set("yaw", "1", "input")
+        self.hash()
+        self.assertIn("not in the page’s list", self.text("verdict"))
+
     def test_pictures_to_look_at(self):
+        self.driver.get(PAGE.as_uri())
+        self.hash()
         for name, scheme, width, height, mobile in (("light", "light", 1440, 1300, False), ("dark", "dark", 1440, 1300, False),
                                                     ("phone", "light", 390, 844, True), ("phone_dark", "dark", 390, 844, True)):
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
