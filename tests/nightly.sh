@@ -51,7 +51,7 @@ step test-release-long run_tests release -L nightly
 step build-vtk build_vtk
 step test-vtk-long with_vtk run_tests vtk -L nightly
 step abi abi
-step build-paraview build_paraview
+step build-paraview build_paraview -DANAMORPH_NIGHTLY=ON
 step test-paraview-long run_tests paraview -L nightly
 step arm64 tests/arm64.sh build/arm64
 step web tests/web/web.sh build/release

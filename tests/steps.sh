@@ -10,7 +10,7 @@ log_dir=build/log
 mkdir -p "$log_dir"
 jobs="$(nproc)"
 # The core is built with its hosts, for VTK and for ParaView: in folders that ccache is to take for one.
-export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
 export ANAMORPH_WERROR=ON                  # in the demo as well, so that the tests need not build it all again
 
 # step NAME COMMAND...: quiet when it succeeds; prints its log and ends the run when it fails.
@@ -34,7 +34,7 @@ build_vtk() {
     with_vtk build vtk "-DVTK_ROOT=$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3
 }
 build_paraview() {
-    build paraview -DPython3_EXECUTABLE=/usr/bin/python3
+    build paraview -DPython3_EXECUTABLE=/usr/bin/python3 "$@"
 }
 
 # with_vtk COMMAND...: where the libraries and tools of plain VTK find each other.

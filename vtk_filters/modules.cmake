@@ -39,6 +39,24 @@ vtk_module_build(MODULES ${anamorph_modules}
                  CMAKE_DESTINATION ${package_dir}
                  HEADERS_DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/anamorph/vtk
                  USE_EXTERNAL OFF)
+# Half of the time to compile what stands on VTK goes into its headers.
+set(vtk_headers <vtkCellArray.h> <vtkCellData.h> <vtkDoubleArray.h> <vtkFieldData.h> <vtkImageData.h> <vtkInformation.h>
+                <vtkMultiBlockDataSet.h> <vtkObjectFactory.h> <vtkPointData.h> <vtkPolyData.h> <vtkStreamingDemandDrivenPipeline.h>)
+precompile(Filters PRIVATE ${standard_headers} ${vtk_headers})
+precompile(Rendering PRIVATE ${standard_headers} ${vtk_headers} <vtkRenderer.h> <vtkShaderProgram.h> <vtkTextureObject.h>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # Its bug 105651 again, in headers that are precompiled.
+    target_compile_options(Filters PRIVATE -Wno-array-bounds)
+    target_compile_options(Rendering PRIVATE -Wno-array-bounds)
+endif()
+
+# compile_wrapper(TARGET): of code that a toolkit writes to call our classes.
+function(compile_wrapper target)
+    target_compile_options(${target} PRIVATE ${quick_to_compile})
+    if(ANAMORPH_UNITY)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+    endif()
+endfunction()
 
 find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
 set(python_dir ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages)
@@ -50,8 +68,10 @@ vtk_module_wrap_python(MODULES ${anamorph_modules}
                        CMAKE_DESTINATION ${package_dir}
                        INSTALL_EXPORT AnamorphVTK)
 # What VTK's wrapper writes leaves out what Pythons newer than it have in their types.
-target_compile_options(AnamorphFiltersPython PRIVATE -Wno-missing-field-initializers)
-target_compile_options(AnamorphRenderingPython PRIVATE -Wno-missing-field-initializers)
+foreach(wrapper AnamorphFiltersPython AnamorphRenderingPython)
+    target_compile_options(${wrapper} PRIVATE -Wno-missing-field-initializers)
+    compile_wrapper(${wrapper})
+endforeach()
 file(GLOB drawing_classes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/vtk_filters/rendering
      ${PROJECT_SOURCE_DIR}/vtk_filters/rendering/vtkAnamorph*.h)
 list(TRANSFORM drawing_classes REPLACE "\\.h$" "")
