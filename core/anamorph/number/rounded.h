@@ -22,6 +22,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "anamorph/number/arithmetic.h"
 #include "anamorph/number/interval.h"
 
 namespace anamorph {
@@ -45,8 +46,7 @@ Rounded<Real> quotient(const Rounded<Real>& f, const Rounded<Real>& g);
 
 template <class Real>
 struct Rounded {
-    /// The unit roundoff of Real: half the spacing of its numbers, relative to their magnitude.
-    static constexpr double kUnit = static_cast<double>(std::numeric_limits<Real>::epsilon() / 2);
+    static constexpr double kUnit = unit_roundoff<Real>();
     /// The largest error of libm's functions, relative to the value, as in number/interval.h.
     static constexpr double kLibm = 8 * kUnit;
     /// The largest error of an underflow. (That of double is above that of long double.)

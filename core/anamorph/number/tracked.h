@@ -16,7 +16,7 @@ namespace anamorph {
 
 template <class T>
 struct Tracked {
-    static constexpr double kUnit = static_cast<double>(std::numeric_limits<T>::epsilon()) / 2;
+    static constexpr double kUnit = unit_roundoff<T>();
 
     T value = 0;
     double error = 0;
