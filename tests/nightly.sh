@@ -4,7 +4,7 @@
 # tests of the core cover, clang-tidy, and what became of the last version's binary interface. It says how long each step took; the
 # last line is ctest's own summary.
 . "$(dirname "$0")/steps.sh"
-tests/install_packages.sh nightly arm64 packages web
+tests/install_packages.sh nightly arm64 farm packages web
 
 # Each file by itself, so that what it forgets to include is found, and clang-tidy has a command for each.
 clang="build/clang"
@@ -53,6 +53,7 @@ step test-vtk-long with_vtk run_tests vtk -L nightly
 step abi abi
 step build-paraview build_paraview -DANAMORPH_NIGHTLY=ON
 step test-paraview-long run_tests paraview -L nightly
+step farm tests/farm.sh build/release
 step arm64 tests/arm64.sh build/arm64
 step web tests/web/web.sh build/release
 step build-fuzz build fuzz
