@@ -807,5 +807,36 @@ TEST(DeformationReach, FewOfManyAreNear) {
     EXPECT_GT(near, 100);
 }
 
+/// What bumps add to a point and its derivatives is found by fewer operations than their formula has, and the same.
+TEST(DrapedSurface, FramesHaveTheBitsOfTheFormulaOfBumps) {
+    using J = Jet<double, 1>;
+    std::mt19937 random(11);
+    const auto any = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    const std::size_t plane = 0;
+    const auto flat = surface::make_surface(plane, {});
+    for (int i = 0; i < 3000; ++i) {
+        Deformation d;
+        d.kernel = i % 4 == 0 ? DeformationKernel::wendland_c2 : DeformationKernel::gaussian;
+        d.center = {any(0, 1), any(0, 1)};
+        d.extent = {std::exp(any(-6, 2)), std::exp(any(-6, 2))};
+        d.vector = {any(-1, 1), any(-1, 1), any(-1, 1)};
+        const double u = any(0, 1), v = any(0, 1);
+        const surface::SurfaceFrame with = surface::make_surface(plane, {}, {d})->frame(u, v),
+                                    without = flat->frame(u, v);
+        Deformation down = d;
+        down.center.y = 1 - d.center.y;
+        const J share = influence(down, J::variable(u, 1, 0), J::variable(v, 0, 1));
+        for (int k = 0; k < 3; ++k) {
+            // Bumps that do not reach are left out.
+            if (std::fabs(share.c[0]) < 1e-20) continue;
+            EXPECT_EQ(with.position[k], without.position[k] + share.c[0] * d.vector[k]) << i;
+            EXPECT_EQ(with.by_u[k], without.by_u[k] + share.c[1] * d.vector[k]) << i;
+            EXPECT_EQ(with.by_v[k], without.by_v[k] + share.c[2] * d.vector[k]) << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace anamorph::test_drape_surfaces

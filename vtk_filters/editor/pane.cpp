@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/parallel.h"
+
 namespace anamorph_editor {
 
 using anamorph::Box;
@@ -299,12 +301,13 @@ void Pane::show(const Box& of) {
     const Box pane = anamorph::intersection({(box.x0 - m_left) * m_magnified, (box.y0 - m_top) * m_magnified,
                                              (box.x1 - m_left) * m_magnified, (box.y1 - m_top) * m_magnified},
                                             {0, 0, m_size.width, m_size.height});
-    for (int y = pane.y0; y < pane.y1; ++y) {
+    anamorph::default_parallel_for()(std::max(pane.height(), 0), [&](std::int64_t down) {
+        const int y = pane.y0 + static_cast<int>(down);
         unsigned char* to = image + 4 * (std::ptrdiff_t{m_size.height - 1 - y} * m_size.width + pane.x0);
         const int row = m_top + y / m_magnified;
         for (int x = pane.x0; x < pane.x1; ++x, to += 4)
             std::copy_n(m_pixels.at(m_left + x / m_magnified, row), 3, to);
-    }
+    });
     m_image->Modified();
     this->damage(of);
 }
