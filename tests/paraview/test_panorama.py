@@ -162,6 +162,62 @@ shown.SetRepresentationType("Panorama")
 shown.Panorama = CreateTexture("panorama.png")
 shown.ProjectorPosition, shown.ProjectorDirection = list(POSITION), [1, 0, 0]
 compare(view, exact())
+
+# Concentric mosaics: three panoramas of the slits of circles, each of other colours, as the camera sees them.
+CIRCLES, ROWS, RADIUS, CENTRE = 3, 192, 1.5, np.array([-0.5, 0.2, 0.3])
+
+
+def slit_colour(k, u, v):
+    return np.stack([60 + 70 * k + 40 * np.sin(4 * np.pi * u), 127 + 100 * np.cos(2 * np.pi * u), 20 + 200 * v], -1)
+
+
+def write_mosaics(name):
+    y, x = np.mgrid[0:ROWS, 0:WIDTH]
+    stack = np.concatenate([slit_colour(k, (x + 0.5) / WIDTH, (y + 0.5) / ROWS) for k in range(CIRCLES)])
+    image, writer = vtkImageData(), vtkPNGWriter()
+    image.SetDimensions(WIDTH, CIRCLES * ROWS, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(stack.round().astype(np.uint8)[::-1]).reshape(-1, 3), deep=True))
+    writer.SetFileName(name)
+    writer.SetInputData(image)
+    writer.Write()
+
+
+def of_mosaics(viewer):
+    """By the tangents from a point to each circle; right is z, and ahead is x."""
+    j, i = np.mgrid[0:SIZE, 0:SIZE]
+    way = np.stack([(i + 0.5) * 2 / SIZE - 1, 1 - (j + 0.5) * 2 / SIZE, -np.ones((SIZE, SIZE))], -1)
+    world = way * (2 / np.abs(way).max(-1))[..., None]
+    ahead, up, right = np.moveaxis(world - CENTRE, -1, 0)
+    u_ahead, _, u_right = np.moveaxis(world - viewer, -1, 0)
+    length, rho = np.hypot(u_ahead, u_right), np.hypot(ahead, right)
+    offset = (right * u_ahead - ahead * u_right) / length
+    place = (offset / RADIUS + 1) / 2 * (CIRCLES - 1)
+    sum_, all_ = 0, 0
+    for k in range(CIRCLES):
+        q = RADIUS * (k - 1)
+        along, aside = q * q / rho**2, q * np.sqrt(np.maximum(rho**2 - q * q, 0)) / rho**2
+        x, z = right - along * right - aside * ahead, ahead - along * ahead + aside * right
+        u, v = np.arctan2(x, z) / (2 * np.pi) + 0.5, 0.5 - up / np.hypot(x, z) * WIDTH / (2 * np.pi * ROWS)
+        share = np.maximum(0, 1 - np.abs(place - k)) * ((v >= 0) & (v <= 1))
+        sum_, all_ = sum_ + share[..., None] * slit_colour(k, u, v), all_ + share
+    seen = (np.abs(offset) <= RADIUS) & (rho > RADIUS) & (ahead * u_ahead + right * u_right > 0) & (all_ > 0)
+    return np.where(seen[..., None], sum_ / np.maximum(all_, 1e-9)[..., None], 255), seen
+
+
+write_mosaics("mosaics.png")
+Delete(shown)
+shown = Show(room, view)
+white(shown)
+shown.SetRepresentationType("Panorama")
+shown.Panorama, shown.PanoramaProjection = CreateTexture("mosaics.png"), "Cylindrical"
+shown.ProjectorPosition, shown.ProjectorDirection = list(CENTRE), [1, 0, 0]
+shown.PanoramaCircles, shown.PanoramaCircleRadius = CIRCLES, RADIUS
+assert of_mosaics(np.zeros(3))[1].sum() > 20000
+compare(view, of_mosaics(np.zeros(3)), 3.0)
+shown.PanoramaFollowCamera, shown.PanoramaViewpoint = 0, [-0.9, 0, 1.1]
+compare(view, of_mosaics(np.array([-0.9, 0, 1.1])), 3.0)
+Delete(shown)
+
 Disconnect()
 Connect()
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
@@ -174,7 +230,9 @@ proxy = servermanager.ProxyManager().NewProxy("representations", "AnamorphPanora
 projector, shader = anamorph.vtkAnamorphPanoramaProjector(), anamorph.vtkAnamorphProjectionShader()
 for name, value in {"Projection": projector.GetProjection(), "FieldOfView": projector.GetFieldOfView(),
                     "PanniniDistance": projector.GetPanniniDistance(), "ProjectionMode": shader.GetMode(),
-                    "HideUnpainted": shader.GetHideUnpainted(), "Occlusion": 0, "ShadowSize": projector.GetShadowSize(), "ProjectorPosition": projector.GetPosition(),
+                    "HideUnpainted": shader.GetHideUnpainted(), "Occlusion": 0, "ShadowSize": projector.GetShadowSize(),
+                    "Circles": projector.GetCircles(), "CircleRadius": projector.GetCircleRadius(),
+                    "FollowCamera": projector.GetFollowCamera(), "Viewpoint": projector.GetViewpoint(), "ProjectorPosition": projector.GetPosition(),
                     "ProjectorDirection": projector.GetDirection(), "ProjectorViewUp": projector.GetViewUp()}.items():
     values = value if isinstance(value, tuple) else (value,)
     assert tuple(proxy.GetProperty(name).GetElement(i) for i in range(len(values))) == values, name

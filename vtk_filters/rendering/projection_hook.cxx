@@ -92,7 +92,10 @@ glm::dmat4 clip_matrix(vtkRenderer* renderer) {
 /// ray = matrix * gl_Position + origin. In perspective x, y and w tell a point better than z does; else z counts.
 struct RayFromClip {
     glm::dmat4 matrix{0.0};
+    /// Where gl_Position is 0: in perspective the eye's own ray.
     glm::dvec3 origin{0.0};
+    /// The eye from the projector, and 1; in a parallel view the direction that it is in, and 0.
+    glm::dvec4 eye{0.0};
 
     RayFromClip(const glm::dmat4& clip, const anamorph::ProjectorPose& pose) {
         const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
@@ -107,6 +110,8 @@ struct RayFromClip {
         matrix[1] = glm::dvec4(to_ray[1], 0);
         matrix[third] = glm::dvec4(to_ray[2], 0);
         origin = -(to_frame * (to_world * part(3) + pose.position));
+        // Depths grow away from the eye.
+        eye = perspective ? glm::dvec4(origin, 1) : glm::dvec4(-glm::normalize(to_ray[2]), 0);
     }
 };
 
@@ -131,6 +136,7 @@ void ProjectionHook::put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner)
         hook->m_state = state;
         // Until there is a right pose nothing has a direction.
         hook->write_uniforms(glm::dmat4(0.0), glm::dvec3(0.0), glm::dmat3(0.0), 0);
+        hook->write_viewer(glm::dvec4(0.0), {});
         // By name, tables and shadows come behind panoramas, and are loaded when these have been.
         actor->GetProperty()->SetTexture(texture_name(hook->m_index).c_str(), hook);
         hook->m_shadows = vtkSmartPointer<LoadedTexture>::New();
@@ -150,7 +156,7 @@ void ProjectionHook::take_off(vtkActor* actor) {
             if (property->GetTexture(name.c_str())) property->RemoveTexture(name.c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(matrix_name(i).c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(origin_name(i).c_str());
-        for (const std::string& name : {frame_name(i), origin_name(i), away_name(i)})
+        for (const std::string& name : {frame_name(i), origin_name(i), away_name(i), viewer_name(i)})
             shaders->GetFragmentCustomUniforms()->RemoveUniform(name.c_str());
     }
 }
@@ -322,11 +328,26 @@ void ProjectionHook::set_uniforms(vtkRenderer* renderer) {
         const anamorph::ProjectorPose pose = pose_of(*m_projector);
         const RayFromClip from(clip_matrix(renderer), pose);
         write_uniforms(from.matrix, from.origin, frame_of(pose), glm::length(pose.position));
+        write_viewer(from.eye, pose);
         complain("", m_wrong_pose);
     } catch (const anamorph::Error& error) {
         // The last right pose stays.
         complain(error.what(), m_wrong_pose);
     }
+}
+
+void ProjectionHook::write_viewer(const glm::dvec4& eye, const anamorph::ProjectorPose& pose) {
+    glm::dvec4 viewer = eye;
+    if (!m_projector->GetFollowCamera()) {
+        const double* at = m_projector->GetViewpoint();
+        viewer =
+            glm::dvec4(glm::transpose(frame_of(pose)) * (glm::dvec3(at[0], at[1], at[2]) - pose.position), 1);
+    }
+    // Heights of the viewpoint do not count: slits see in the plane of their circles.
+    const double radius = viewer.w > 0 ? m_projector->GetCircleRadius() : 1;
+    const float numbers[] = {static_cast<float>(viewer.x / radius), static_cast<float>(viewer.y / radius),
+                             static_cast<float>(viewer.z / radius), static_cast<float>(viewer.w)};
+    m_shaders->GetFragmentCustomUniforms()->SetUniform4f(viewer_name(m_index).c_str(), numbers);
 }
 
 void ProjectionHook::write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin,

@@ -77,6 +77,8 @@ class ProjectionHook : public LoadedTexture {
     /// Writes the uniforms. `away`: the distance of the projector from the origin of the scene.
     void write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin, const glm::dmat3& frame,
                         double away);
+    /// Writes from where concentric mosaics are seen. `eye`: the camera's, from the projector, as RayFromClip has it.
+    void write_viewer(const glm::dvec4& eye, const anamorph::ProjectorPose& pose);
 
     vtkSmartPointer<vtkAnamorphProjectionShader> m_owner;
     vtkSmartPointer<vtkAnamorphPanoramaProjector> m_projector;

@@ -11,6 +11,7 @@
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/panorama_glsl.h"
+#include "mosaic_text.h"
 #include "shadow_map.h"
 #include "shadow_rays.h"
 #include "vtkAlgorithm.h"
@@ -66,11 +67,15 @@ std::string with_number(std::string text, std::size_t projector) {
     return text;
 }
 
+/// What a texel `colour` of a texture of so many components is in red, green, blue and alpha.
+std::string rgba_of(int components) {
+    if (components > 2) return "colour";
+    return components == 1 ? "vec4(colour.rrr, 1.0)" : "vec4(colour.rrr, colour.g)";
+}
+
 /// Reads a panorama. Its last rows are not mixed with the first, which a texture that repeats would do.
 std::string read_function(const PreparedPanorama& panorama) {
     const anamorph::Chart& chart = panorama.chart;
-    const std::string swizzle[] = {"colour.rrr, 1.0", "colour.rrr, colour.g"};
-    const int channels = panorama.thrown.components;
     return "vec4 anamorphRead#(vec2 at, vec2 alongA, vec2 alongB) {\n  vec2 size = vec2(" +
            written(chart.width()) + ", " + written(chart.height()) + "), flip = vec2(1.0, -1.0);\n  " +
            (chart.closed() ? "at.y = clamp(at.y, 0.5, size.y - 0.5);\n"
@@ -78,7 +83,7 @@ std::string read_function(const PreparedPanorama& panorama) {
            "  vec4 colour = textureGrad(anamorphPanorama#, vec2(at.x, size.y - at.y) / size, flip * alongA / "
            "size, "
            "flip * alongB / size);\n  return " +
-           (channels > 2 ? "colour" : "vec4(" + swizzle[channels - 1] + ")") + ";\n}\n";
+           rgba_of(panorama.thrown.components) + ";\n}\n";
 }
 
 /// How much counts towards borders: as anamorph::share_of() fades. Full circles have no border to the left and right, faces
@@ -226,6 +231,13 @@ std::string second_pass_function(const PreparedPanorama& panorama) {
 
 /// All functions of a projector.
 std::string functions(const PreparedPanorama& panorama, bool rays, std::size_t i) {
+    const ThrownPanorama& thrown = panorama.thrown;
+    if (thrown.circles > 1)
+        return with_number(
+            fade_function(panorama) + mosaic_function(panorama.chart, {.circles = thrown.circles},
+                                                      thrown.circle_radius, thrown.mipmaps,
+                                                      rgba_of(thrown.components)),
+            i);
     std::string text = panorama_glsl(panorama.chart, numbered("Thrown", i)) + read_function(panorama) +
                        fade_function(panorama);
     if (panorama.groups.empty())
@@ -282,6 +294,9 @@ std::string origin_name(std::size_t projector) {
 std::string away_name(std::size_t projector) {
     return numbered("Away", projector);
 }
+std::string viewer_name(std::size_t projector) {
+    return numbered("Viewer", projector);
+}
 std::string frame_name(std::size_t projector) {
     return numbered("Frame", projector);
 }
@@ -304,6 +319,9 @@ ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphPro
     thrown.fade = projector.GetFade();
     if (projector.GetOccluders()) thrown.shadow_size = projector.GetShadowSize();
     thrown.mode = shader.GetMode();
+    thrown.circles = projector.GetCircles();
+    thrown.mipmaps = thrown.circles > 1 && texture->GetMipmap();
+    thrown.circle_radius = projector.GetCircleRadius();
     if (thrown.mode == Shader::DIRECT) return thrown;
     if (thrown.mode == Shader::RESIDUAL) thrown.machine = shader.GetMachine();
     thrown.directions = shader.GetNumberOfDirections();
@@ -318,8 +336,40 @@ anamorph::ProjectorPose pose_of(vtkAnamorphPanoramaProjector& projector) {
     return {vector(projector.GetPosition()), vector(projector.GetDirection()), vector(projector.GetViewUp())};
 }
 
+namespace {
+
+anamorph::Chart chart_of(const ThrownPanorama& thrown) {
+    if (thrown.height % thrown.circles != 0)
+        throw anamorph::Error("Circles", std::to_string(thrown.circles),
+                              "must divide the panorama's height, " + std::to_string(thrown.height));
+    return thrown.chart.of({thrown.width, thrown.height / thrown.circles});
+}
+
+/// Refuses what concentric mosaics leave no meaning to.
+void check_mosaics(const PreparedPanorama& panorama) {
+    const ThrownPanorama& thrown = panorama.thrown;
+    anamorph::check_slit_panorama(panorama.chart);
+    if (!(thrown.circle_radius > 0 && std::isfinite(thrown.circle_radius)))
+        throw anamorph::Error("CircleRadius", anamorph::shortest(thrown.circle_radius),
+                              "must be a finite number above 0");
+    if (thrown.mode != Shader::DIRECT)
+        throw anamorph::Error("Mode", thrown.mode == Shader::RESIDUAL ? "residual" : "multipass",
+                              "must be direct for concentric mosaics");
+    if (thrown.shadow_size > 0)
+        throw anamorph::Error("Occluders", "given",
+                              "must be none for concentric mosaics: what hides a point from their slits "
+                              "hides it from the viewer");
+    if (thrown.most_rows > 0 && thrown.height > thrown.most_rows)
+        throw anamorph::Error("Panorama", std::to_string(thrown.height) + " rows",
+                              "must have no more than " + std::to_string(thrown.most_rows) +
+                                  ", the most that a texture may have here");
+}
+
+}  // namespace
+
 PreparedPanorama::PreparedPanorama(const ThrownPanorama& panorama)
-    : thrown(panorama), chart(panorama.chart.of({panorama.width, panorama.height})) {
+    : thrown(panorama), chart(chart_of(panorama)) {
+    if (thrown.circles > 1) check_mosaics(*this);
     if (thrown.mode == Shader::DIRECT) return;
     const bool residual = thrown.mode == Shader::RESIDUAL;
     if (residual && chart.pieces().size() > 1)

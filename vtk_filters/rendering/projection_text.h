@@ -23,6 +23,9 @@ struct ThrownPanorama {
     int width = 0, height = 0;
     int components = 4;  ///< components of the texture as it was loaded
     double fade = 0;
+    int circles = 1;  ///< panoramas one above the other
+    double circle_radius = 1;
+    bool mipmaps = false;  ///< of concentric mosaics: are there levels to read?
     std::string machine;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
     int shadow_size = 0;  ///< 0: nothing is hidden
@@ -41,7 +44,7 @@ anamorph::ProjectorPose pose_of(vtkAnamorphPanoramaProjector& projector);
 /// A panorama with what its mode needs.
 struct PreparedPanorama {
     ThrownPanorama thrown;
-    anamorph::Chart chart;
+    anamorph::Chart chart;  ///< of one panorama
     /// The groups of projection planes; none in mode direct. In mode residual, only those whose bound is good
     /// enough.
     std::vector<anamorph::ProjectionGroup> groups;
@@ -84,6 +87,8 @@ std::string shadow_name(std::size_t projector);
 std::string matrix_name(std::size_t projector);
 std::string origin_name(std::size_t projector);
 std::string away_name(std::size_t projector);
+/// The name of the vector that says from where concentric mosaics are seen (mosaic_text.h).
+std::string viewer_name(std::size_t projector);
 /// The name of a matrix that turns such rays into the scene's axes.
 std::string frame_name(std::size_t projector);
 

@@ -40,7 +40,11 @@ void vtkAnamorphPanoramaProjector::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "Occluders: " << this->Occluders.Get() << "\n"
        << indent << "Shadows: " << kShadows[this->Shadows] << "\n"
        << indent << "ShadowSize: " << this->ShadowSize << "\n"
-       << indent << "Fade: " << this->Fade << "\n";
+       << indent << "Fade: " << this->Fade << "\n"
+       << indent << "Circles: " << this->Circles << "\n"
+       << indent << "CircleRadius: " << this->CircleRadius << "\n"
+       << indent << "FollowCamera: " << this->FollowCamera << "\n";
+    write("Viewpoint", this->Viewpoint);
 }
 
 void vtkAnamorphPanoramaProjector::SetPanorama(vtkTexture* panorama) {

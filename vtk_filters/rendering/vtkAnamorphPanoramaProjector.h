@@ -163,6 +163,42 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     vtkGetMacro(Fade, double);
     ///@}
 
+    ///@{
+    /**
+     * The number of panoramas that stand one above the other in the texture. From 2 on they are concentric mosaics (Shum and He 1999; Kim
+     * 2003, 7.2) as anamorph's .mosaic reads them: each of a full turn, seen through the slit of a camera on a circle about Position, in the plane
+     * across ViewUp, along the circle's tangents; radii run evenly from -1 to 1 times CircleRadius. A point of the
+     * scene is then seen as from the viewer: as seen from above, the line of sight touches a circle, and the slits of the two circles beside it that
+     * show this point are mixed. As the scene says where the point is, its height is right whatever its distance. Points within
+     * the outer circle, lines of sight that pass by it, and what lies before the place where they touch a circle receive
+     * nothing; the height of the viewer above the plane does not count. They are thrown in mode DIRECT, without
+     * occluders: what hides a point from the slits hides it from the viewer. Of mipmaps levels are read in which rows are of one panorama alone:
+     * as many as its height can be halved without a rest. Default: 1.
+     */
+    vtkSetClampMacro(Circles, int, 1, 1024);
+    vtkGetMacro(Circles, int);
+    ///@}
+
+    ///@{
+    /**
+     * The radius of the outer circle in world coordinates, above 0. Default: 1.
+     */
+    vtkSetMacro(CircleRadius, double);
+    vtkGetMacro(CircleRadius, double);
+    ///@}
+
+    ///@{
+    /**
+     * Whether concentric mosaics are seen from the camera, or else from Viewpoint, in world coordinates, wherever the camera
+     * is. Defaults: on, (0, 0, 0).
+     */
+    vtkSetMacro(FollowCamera, bool);
+    vtkGetMacro(FollowCamera, bool);
+    vtkBooleanMacro(FollowCamera, bool);
+    vtkSetVector3Macro(Viewpoint, double);
+    vtkGetVector3Macro(Viewpoint, double);
+    ///@}
+
   protected:
     vtkAnamorphPanoramaProjector();
     ~vtkAnamorphPanoramaProjector() override;
@@ -179,6 +215,9 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     char* Lens = nullptr;
     double Position[3] = {0, 0, 0}, Direction[3] = {0, 0, -1}, ViewUp[3] = {0, 1, 0};
     double Fade = 0;
+    int Circles = 1;
+    double CircleRadius = 1, Viewpoint[3] = {0, 0, 0};
+    bool FollowCamera = true;
 };
 
 #endif

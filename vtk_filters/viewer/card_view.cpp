@@ -69,19 +69,18 @@ std::string reading_code(const anamorph::Chart& chart) {
 /// Of a line of sight the two circles beside it, each by its own texel; the panoramas stand one above the other.
 std::string circles_code(const anamorph::Chart& chart, const anamorph::ConcentricStack& stack) {
     const auto number = [](double value) { return anamorph::GlslNumber(value).written(); };
-    const double gaps = std::max(stack.circles - 1, 1);
     return "  vec3 anamorphRay = anamorphPlaceVSOutput.xyz, anamorphSum = vec3(0.0);\n"
            "  anamorphRay /= max(max(abs(anamorphRay.x), abs(anamorphRay.y)), abs(anamorphRay.z));\n"
            // Straight up or down there is no horizontal direction.
            "  if (dot(anamorphRay.xz, anamorphRay.xz) < 1e-12) anamorphRay.x = 1e-6;\n"
-           "  float anamorphCircle = (anamorphSlitOffset(anamorphRay, anamorphViewpoint) + 1.0) / 2.0 * " +
-           number(stack.circles - 1) + ";\n  float anamorphFirst = clamp(floor(anamorphCircle), 0.0, " +
-           number(gaps - 1) + ");\n  float anamorphWeight = clamp(anamorphCircle - anamorphFirst, 0.0, " +
-           number(stack.circles > 1) + ");\n  for (int i = 0; i < " + (stack.circles > 1 ? "2" : "1") +
-           "; ++i) {\n    float circle = anamorphFirst + float(i), radius = " +
-           (stack.circles > 1 ? "2.0 * circle / " + number(gaps) + " - 1.0" : "0.0") +
-           ";\n    vec2 size = vec2(" + number(chart.width()) + ", " + number(chart.height()) +
-           ");\n    vec2 at = anamorphSlitTexel(anamorphRay, anamorphViewpoint, radius * " +
+           "  float anamorphWeight;\n  float anamorphFirst = "
+           "anamorphSlitFirst(anamorphSlitOffset(anamorphRay, "
+           "anamorphViewpoint), anamorphWeight);\n  for (int i = 0; i < " +
+           std::to_string(std::min(stack.circles, 2)) +
+           "; ++i) {\n    float circle = anamorphFirst + float(i);\n    vec2 size = vec2(" +
+           number(chart.width()) + ", " + number(chart.height()) +
+           ");\n    vec2 at = anamorphSlitTexel(anamorphRay, anamorphViewpoint, anamorphSlitRadius(circle) "
+           "* " +
            number(1 / stack.depth) +
            ");\n    bool seen = at.y >= 0.0 && at.y <= size.y;\n    at.y = clamp(at.y, 0.5, size.y - 0.5) + "
            "circle * size.y;\n    at /= size * vec2(1.0, " +
@@ -297,7 +296,7 @@ void CardView::be_of_circles() {
     m_per_vertex = false;
     m_actor->GetProperty()->SetTexture("anamorphPicture", m_texture);
     map_places(std::string(anamorph::panorama_glsl_prelude()) +
-                   anamorph::concentric_glsl(m_chart, m_stack->depth, "anamorphSlit"),
+                   anamorph::concentric_glsl(m_chart, *m_stack, "anamorphSlit"),
                circles_code(m_chart, *m_stack));
 }
 

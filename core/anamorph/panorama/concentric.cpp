@@ -29,24 +29,32 @@ glm::dvec2 horizontal(const Ray<double>& ray) {
 }
 
 const ConcentricStack& checked(const ConcentricStack& stack, const Panorama& view, int circle) {
-    if (stack.circles < 1 || stack.circles > ConcentricStack::kMostCircles)
-        throw Error("circles", std::to_string(stack.circles),
-                    "must be an integer from 1 to " + std::to_string(ConcentricStack::kMostCircles));
+    stack.check();
     if (circle < 0 || circle >= stack.circles)
         throw Error("circle", std::to_string(circle + 1),
                     "must be one of the " + std::to_string(stack.circles));
-    if (!(stack.depth > 1)) throw Error("depth", shortest(stack.depth), "must be a number above 1");
-    // By a hair farther it may be from rounding.
-    if (!(std::hypot(stack.viewpoint.x, stack.viewpoint.y) <= 1 + 1e-12))
-        throw Error("viewpoint", shortest(stack.viewpoint.x) + "," + shortest(stack.viewpoint.y),
-                    "must be at most 1 from the centre");
-    if (view.source().counted() != Counted::azimuth || !view.source().closed())
-        throw Error("from", std::string(name_of(view.source().projection())),
-                    "must be a projection whose rows are a full turn");
+    check_slit_panorama(view.source());
     return stack;
 }
 
 }  // namespace
+
+void ConcentricStack::check() const {
+    if (circles < 1 || circles > kMostCircles)
+        throw Error("circles", std::to_string(circles),
+                    "must be an integer from 1 to " + std::to_string(kMostCircles));
+    if (!(depth > 1)) throw Error("depth", shortest(depth), "must be a number above 1");
+    // By a hair farther it may be from rounding.
+    if (!(std::hypot(viewpoint.x, viewpoint.y) <= 1 + 1e-12))
+        throw Error("viewpoint", shortest(viewpoint.x) + "," + shortest(viewpoint.y),
+                    "must be at most 1 from the centre");
+}
+
+void check_slit_panorama(const Chart& panorama) {
+    if (panorama.counted() != Counted::azimuth || !panorama.closed())
+        throw Error("from", std::string(name_of(panorama.projection())),
+                    "must be a projection whose rows are a full turn");
+}
 
 double ConcentricStack::offset(const Ray<double>& ray) const {
     const glm::dvec2 u = horizontal(ray);

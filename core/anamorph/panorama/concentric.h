@@ -35,6 +35,9 @@ struct ConcentricStack {
     /// The viewpoint, x right and z forward; at most 1 from the centre.
     glm::dvec2 viewpoint{0.0};
 
+    /// Throws Error where there are too many circles or none, the depth is not above 1, or the viewpoint is not inside the outer circle.
+    void check() const;
+
     double radius(int circle) const { return circles == 1 ? 0 : (2.0 * circle) / (circles - 1) - 1; }
     /// Horizontal offset of a line of sight through the viewpoint; 0 for a vertical one.
     double offset(const Ray<double>& ray) const;
@@ -47,6 +50,9 @@ struct ConcentricStack {
     /// The largest relative error of drawn heights in all directions, to within a thousandth of it.
     double vertical_distortion(double nearest) const;
 };
+
+/// Throws Error where the rows of a panorama are no full turn.
+void check_slit_panorama(const Chart& panorama);
 
 /// The pull map from a view of a stack to one of its panoramas.
 class ConcentricMap {

@@ -4,7 +4,6 @@
 #include <glm/matrix.hpp>
 
 #include "anamorph/chart/chart_glsl.h"
-#include "anamorph/panorama/concentric.h"
 
 namespace anamorph {
 namespace {
@@ -18,6 +17,21 @@ std::string offset_function(const std::string& name) {
     const GlslNumber offset = ConcentricMap::offset_of(ray_given(text), text.input("p.x"), text.input("p.y"));
     return "float " + name + "Offset(vec3 r, vec2 p) {\n" + text.lines() + "  return " + offset.written() +
            ";\n}\n";
+}
+
+/// As ConcentricStack::weight() has it.
+std::string circle_functions(const ConcentricStack& stack, const std::string& name) {
+    if (stack.circles == 1)
+        return "float " + name +
+               "First(float offset, out float weight) {\n  weight = 0.0;\n  return 0.0;\n}\nfloat " + name +
+               "Radius(float circle) {\n  return 0.0;\n}\n";
+    const std::string gaps = GlslNumber(stack.circles - 1).written();
+    return "float " + name +
+           "First(float offset, out float weight) {\n  float place = clamp((offset + 1.0) / 2.0, 0.0, 1.0) "
+           "* " +
+           gaps + ", first = min(floor(place), " + gaps +
+           " - 1.0);\n  weight = place - first;\n  return first;\n}\nfloat " + name +
+           "Radius(float circle) {\n  return 2.0 * circle / " + gaps + " - 1.0;\n}\n";
 }
 
 std::string texel_function(const Chart& panorama, double depth, const std::string& name) {
@@ -38,8 +52,9 @@ std::string texel_function(const Chart& panorama, double depth, const std::strin
 
 }  // namespace
 
-std::string concentric_glsl(const Chart& panorama, double depth, const std::string& name) {
-    return offset_function(name) + texel_function(panorama, depth, name);
+std::string concentric_glsl(const Chart& panorama, const ConcentricStack& stack, const std::string& name) {
+    return offset_function(name) + circle_functions(stack, name) +
+           texel_function(panorama, stack.depth, name);
 }
 
 }  // namespace anamorph

@@ -177,6 +177,22 @@ void vtkAnamorphPanoramaRepresentation::SetShadowSize(int texels) {
     this->Projector->SetShadowSize(texels);
 }
 
+void vtkAnamorphPanoramaRepresentation::SetCircles(int count) {
+    this->Projector->SetCircles(count);
+}
+
+void vtkAnamorphPanoramaRepresentation::SetCircleRadius(double radius) {
+    this->Projector->SetCircleRadius(radius);
+}
+
+void vtkAnamorphPanoramaRepresentation::SetFollowCamera(bool follow) {
+    this->Projector->SetFollowCamera(follow);
+}
+
+void vtkAnamorphPanoramaRepresentation::SetViewpoint(double x, double y, double z) {
+    this->Projector->SetViewpoint(x, y, z);
+}
+
 void vtkAnamorphPanoramaRepresentation::SetOcclusion(bool occlusion) {
     if (occlusion == this->Occlusion) return;
     this->Occlusion = occlusion;

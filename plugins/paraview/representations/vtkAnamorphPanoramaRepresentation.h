@@ -46,6 +46,10 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     void SetProjectorViewUp(double x, double y, double z);
     void SetShadows(int mode);
     void SetShadowSize(int texels);
+    void SetCircles(int count);
+    void SetCircleRadius(double radius);
+    void SetFollowCamera(bool follow);
+    void SetViewpoint(double x, double y, double z);
     ///@}
 
     /** Whether what is hidden from the projector stays unpainted. Default: off. */
