@@ -49,7 +49,9 @@ for kind in ("Sphere", "Plane", "Wavelet", "Slice"):
         if wanted:
             print(f"# {name} on {kind}", file=sys.stderr, flush=True)
             # The window asks for a second input, which these cannot do without.
-            more = {"Panoramas": Wavelet(WholeExtent=[0, 63, 0, 31, 0, 0])} if name == "AnamorphProjectionBake" else {}
+            seconds = {"AnamorphProjectionBake": lambda: {"Panoramas": Wavelet(WholeExtent=[0, 63, 0, 31, 0, 0])},
+                       "AnamorphImageWarp": lambda: {"Mesh": Plane(Origin=[-10, -10, 0], Point1=[10, -10, 0], Point2=[-10, 10, 0])}}
+            more = seconds.get(name, dict)()
             filter = getattr(simple, name)(Input=source, **more)
             view = CreateRenderView()
             view.UseColorPaletteForBackground, view.Background, view.OrientationAxesVisibility = 0, [0, 0, 0], 0
@@ -70,7 +72,7 @@ print("every one")
 
 # Filters of figures want the array Axes, those of pictures an image, and textures are baked or laid on a mesh with texture coordinates.
 GREYED = {name: "Sphere,Plane,Wavelet,Slice" for name in ("AnamorphFigureGeometry", "AnamorphFigureOutline", "AnamorphFigureSkeleton", "AnamorphFigureImage")}
-GREYED.update({name: "Sphere,Plane,Wavelet" for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView")})
+GREYED.update({name: "Sphere,Plane,Wavelet" for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView", "AnamorphImageWarp")})
 GREYED.update({"AnamorphDeformImage": "Sphere,Plane", "AnamorphProjectionBake": "Sphere,Wavelet,Slice",
                "AnamorphNonlinearTexture": "Sphere,Wavelet,Slice"})
 folders = [os.environ[place] + "/plugins/paraview/anamorph/*.xml" for place in ("ANAMORPH_SOURCE_DIR", "ANAMORPH_BUILD_DIR")]

@@ -27,6 +27,7 @@ NO_PROPERTY = {
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection",
                           "SetOrientation", "SetMirror", "SetDeformationName"},  # Frames and Names have them
     "vtkAnamorphDeformImage": {"SetDeformationList"},
+    "vtkAnamorphImageWarp": {"SetMeshConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphPanoramaProjection": {"SetController", "SetTimeBudget"},  # the proxy gives it time
     "vtkAnamorphProjectionBake": {"SetController"},
@@ -238,7 +239,7 @@ def with_input(cls):
     """A new object that has what it needs to execute, seen by a camera."""
     new = cls()
     if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape, anamorph.vtkAnamorphPanoramaView,
-               anamorph.vtkAnamorphDeformImage):
+               anamorph.vtkAnamorphDeformImage, anamorph.vtkAnamorphImageWarp):
         picture = vtkRTAnalyticSource()
         picture.SetWholeExtent(0, 9, 0, 19, 0, 0)  # twice as high as wide, as the last projection is
         picture.Update()
@@ -247,6 +248,10 @@ def with_input(cls):
             relief = with_input(anamorph.vtkAnamorphReliefSource)
             relief.Update()
             new.SetInputData(1, relief.GetOutput())
+        elif cls is anamorph.vtkAnamorphImageWarp:
+            mesh = vtkPlaneSource()
+            mesh.Update()
+            new.SetInputData(1, mesh.GetOutput())
     elif cls is anamorph.vtkAnamorphBlendShapeReader:
         with open("shape.obj", "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

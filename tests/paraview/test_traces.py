@@ -223,11 +223,23 @@ def a_view_of_a_panorama():
     apply(view, Projection=3, Lens="kb4:k1=0.02")
 
 
+def an_image_warped_by_a_mesh():
+    image = Wavelet(registrationName="image", WholeExtent=[0, 20, 0, 20, 0, 0])
+    image.UpdatePipeline()
+    mesh = Plane(registrationName="mesh", Origin=[0, 0, 0], Point1=[20, 0, 0], Point2=[0, 20, 0], XResolution=8, YResolution=8)
+    mesh.UpdatePipeline()
+    moved = AnamorphDeform(registrationName="moved", Input=mesh)
+    apply(moved, AutomaticPlane=0, Origin=[0, 0, 0], Axis1=[20, 0, 0], Axis2=[0, 20, 0], Deformations=[.5, .5, .3, .3, 3, 0, 0, 0, 1])
+    SetActiveSource(image)  # whose arrays a new filter's are chosen from
+    warp = AnamorphImageWarp(registrationName="result", Input=image, Mesh=moved)
+    apply(warp, Amount=.5, Tolerance=.001, Interpolation=1)
+
+
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row, shapes_of_files,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
             a_texture_on_few_polygons, a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table,
-            splats_of_a_file]
+            splats_of_a_file, an_image_warped_by_a_mesh]
 
 
 # ---- What is compared ----

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <vtkAnamorphDeform.h>
 #include <vtkAnamorphDrape.h>
+#include <vtkAnamorphImageWarp.h>
 #include <vtkAnamorphNonlinearTexture.h>
 #include <vtkAnamorphPanoramaProjection.h>
 #include <vtkAnamorphProjectionBake.h>
@@ -35,6 +36,8 @@ TEST(VtkInputs, WhatIsNotConnectedIsSaidInOurWords) {
                 HasSubstr("the scene is not given: input port 0 must be connected"));
     EXPECT_THAT(said_by(vtkNew<vtkAnamorphNonlinearTexture>()),
                 HasSubstr("the mesh is not given: input port 0 must be connected"));
+    EXPECT_THAT(said_by(vtkNew<vtkAnamorphImageWarp>()),
+                HasSubstr("the image is not given: input port 0 must be connected"));
     vtkNew<vtkAnamorphProjectionBake> bake;
     EXPECT_THAT(said_by(bake), HasSubstr("the mesh is not given: input port 0 must be connected"));
     vtkNew<vtkPlaneSource> plane;
