@@ -12,9 +12,11 @@
 #include "anamorph/figure/body/body_mapping_glsl.h"
 #include "anamorph/figure/body/displacement.h"
 #include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/figure/image/occlusion.h"
 #include "block_looks.h"
 #include "ellipsoid_bodies.h"
 #include "ellipsoid_shader.h"
+#include "smp_for.h"
 #include "vtkActor.h"
 #include "vtkAnamorphEllipsoidLocator.h"
 #include "vtkCamera.h"
@@ -92,9 +94,13 @@ struct vtkAnamorphEllipsoidMapper::Drawing {
     vtkNew<vtkPolyData> no_data;  ///< for what VTK's mapper asks of its input
     vtkNew<vtkOpenGLBufferObject> buffer;
     vtkNew<vtkTextureObject> texture;
-    vtkNew<vtkOpenGLBufferObject> chosen;  ///< corners of the bodies that are drawn during interaction
-    vtkMTimeType chosen_time = 0;
-    std::size_t chosen_count = 0;                  ///< of bodies
+    vtkNew<vtkOpenGLBufferObject> chosen;  ///< corners of the bodies that are drawn, where not all are
+    vtkMTimeType chosen_time = 0;  ///< of the bodies that the largest were chosen of; 0: these are others
+    std::size_t chosen_count = 0;  ///< of bodies
+    anamorph::figure::OccludedBodies occluded;
+    vtkMTimeType occluded_time = 0;  ///< of the bodies that these are
+    std::vector<std::uint32_t> seen;
+    std::size_t drawn = 0;                         ///< bodies of the last picture
     vtkWeakPointer<vtkOpenGLRenderWindow> window;  ///< that these are in
     std::vector<vtkSmartPointer<vtkTexture>> textures;
     std::vector<std::string> texture_names;
@@ -210,6 +216,7 @@ void vtkAnamorphEllipsoidMapper::ShallowCopy(vtkAbstractMapper* mapper) {
     this->Probability = other->Probability;
     this->Style = other->Style;
     this->InteractiveBodies = other->InteractiveBodies;
+    this->OcclusionCulling = other->OcclusionCulling;
     this->TextureArray = other->TextureArray;
     this->TextureOffsetArray = other->TextureOffsetArray;
     this->TextureMapping = other->TextureMapping;
@@ -311,6 +318,10 @@ vtkIdType vtkAnamorphEllipsoidMapper::GetNumberOfSkippedPoints() {
     return this->Current->bodies.skipped;
 }
 
+vtkIdType vtkAnamorphEllipsoidMapper::GetNumberOfDrawnBodies() {
+    return static_cast<vtkIdType>(this->Current->drawn);
+}
+
 bool vtkAnamorphEllipsoidMapper::GatherBodies() {
     Drawing& current = *this->Current;
     vtkDataObject* input = this->GetInputDataObject(0, 0);
@@ -321,6 +332,7 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
     current.input_time = input_time;
     current.mapper_time = this->GetMTime();
     current.bodies = EllipsoidBodies();
+    current.occluded_time = 0;
     current.data.clear();
     current.valid = false;
     try {
@@ -488,11 +500,13 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
     state->vtkglDisable(GL_CULL_FACE);
     current.texture->Activate();
     this->FindVariant(renderer, actor);
-    const bool chosen = !selector && this->ChooseBodies(renderer);
+    const bool chosen = !selector && this->ChooseBodies(renderer, actor);
+    current.drawn = chosen ? current.chosen_count : current.bodies.bodies.size();
     const auto draw = [&](vtkIdType first, std::size_t count) {
         current.first = first;
         this->UpdateShaders(this->Primitives[PrimitiveTris], renderer, actor);
         if (chosen) {
+            if (current.chosen_count == 0) return;
             current.chosen->Bind();
             glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * current.chosen_count), GL_UNSIGNED_INT,
                            nullptr);
@@ -512,22 +526,70 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
     current.texture->Deactivate();
 }
 
-/// Finds the bodies that are drawn while the window is interacted with. False where all are drawn.
-bool vtkAnamorphEllipsoidMapper::ChooseBodies(vtkRenderer* renderer) {
+/// Whether bodies that are hidden, and only these, may be left out.
+bool vtkAnamorphEllipsoidMapper::IsCulled(vtkRenderer* renderer, vtkActor* actor) {
+    constexpr std::size_t kFew = 20000;
+    const Drawing& current = *this->Current;
+    if (this->OcclusionCulling == NEVER || renderer->GetSelector() || current.variant.cut ||
+        this->Style == OCTANT || actor->GetProperty()->GetOpacity() < 1 ||
+        this->HasTranslucentPolygonalGeometry() ||
+        (actor->GetTexture() && actor->GetTexture()->IsTranslucent()))
+        return false;
+    if (this->OcclusionCulling == ALWAYS) return true;
+    const auto* const name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string driver = name ? name : "";
+    return current.bodies.bodies.size() >= kFew &&
+           (driver.find("llvmpipe") != std::string::npos || driver.find("softpipe") != std::string::npos);
+}
+
+/// Finds the bodies that the picture may show.
+void vtkAnamorphEllipsoidMapper::CullBodies(vtkRenderer* renderer, vtkActor* actor) {
+    constexpr double kOfSamples =
+        0.75;  // pixels: all samples of a pixel are within half its diagonal of its middle
+    Drawing& current = *this->Current;
+    if (current.occluded_time != current.mapper_time) {
+        current.occluded = anamorph::figure::OccludedBodies();
+        current.occluded.reserve(current.bodies.bodies.size());
+        for (const anamorph_vtk::EllipsoidBody& body : current.bodies.bodies)
+            if (body.drawn)
+                current.occluded.add(body.center, body.axes);
+            else
+                current.occluded.add_none();
+        current.occluded_time = current.mapper_time;
+    }
+    const ViewMatrices matrices(renderer, actor);
+    anamorph::figure::OcclusionView view;
+    view.to_clip = matrices.view_to_clip * matrices.data_to_view;
+    int left, bottom;
+    renderer->GetTiledSizeAndOrigin(&view.width, &view.height, &left, &bottom);
+    if (renderer->GetRenderWindow()->GetMultiSamples() > 1) view.reach = kOfSamples;
+    current.seen = current.occluded.seen(view, anamorph::smp_for);
+}
+
+/// Finds the bodies that are drawn: those that are not hidden, or while the window is interacted with the largest. False
+/// where all are drawn.
+bool vtkAnamorphEllipsoidMapper::ChooseBodies(vtkRenderer* renderer, vtkActor* actor) {
     constexpr double kStill = 1;  // frames a second; windows that are interacted with ask for more
     Drawing& current = *this->Current;
     const auto most = static_cast<std::size_t>(this->InteractiveBodies);
-    if (most == 0 || current.bodies.bodies.size() <= most ||
-        renderer->GetRenderWindow()->GetDesiredUpdateRate() < kStill)
-        return false;
-    if (current.chosen_time == this->VBOBuildTime) return true;
+    const bool all = most == 0 || renderer->GetRenderWindow()->GetDesiredUpdateRate() < kStill;
+    const bool culled = this->IsCulled(renderer, actor);
+    std::size_t left = current.bodies.bodies.size();
+    if (culled) {
+        this->CullBodies(renderer, actor);
+        left = current.seen.size();
+    }
+    const bool largest = !all && left > most;
+    if (!culled && !largest) return false;
+    if (largest && current.chosen_time == this->VBOBuildTime) return true;
+    if (largest) current.seen = current.bodies.largest(most);
     std::vector<unsigned int> corners;
-    corners.reserve(3 * most);
-    for (const std::uint32_t body : current.bodies.largest(most))
+    corners.reserve(3 * current.seen.size());
+    for (const std::uint32_t body : current.seen)
         for (unsigned int corner = 0; corner < 3; ++corner) corners.push_back(3 * body + corner);
-    current.chosen->Upload(corners, vtkOpenGLBufferObject::ElementArrayBuffer);
-    current.chosen_count = corners.size() / 3;
-    current.chosen_time = this->VBOBuildTime;
+    if (!corners.empty()) current.chosen->Upload(corners, vtkOpenGLBufferObject::ElementArrayBuffer);
+    current.chosen_count = current.seen.size();
+    current.chosen_time = largest ? static_cast<vtkMTimeType>(this->VBOBuildTime) : 0;
     return true;
 }
 
@@ -752,6 +814,7 @@ void vtkAnamorphEllipsoidMapper::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
     static const char* const shapes[] = {"axes", "tensor", "covariance"};
     static const char* const styles[] = {"plain", "principal ellipses", "octant"};
+    static const char* const culls[] = {"automatic", "never", "always"};
     static const char* const mappings[] = {"latlong", "mirrored", "linear", "octahedral"};
     os << indent << "Shape: " << shapes[this->Shape] << "\n"
        << indent << "AxesArray: " << this->AxesArray << "\n"
@@ -761,6 +824,7 @@ void vtkAnamorphEllipsoidMapper::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "Probability: " << this->Probability << "\n"
        << indent << "Style: " << styles[this->Style] << "\n"
        << indent << "InteractiveBodies: " << this->InteractiveBodies << "\n"
+       << indent << "OcclusionCulling: " << culls[this->OcclusionCulling] << "\n"
        << indent << "NumberOfTextures: " << this->GetNumberOfTextures() << "\n"
        << indent << "TextureArray: " << this->TextureArray << "\n"
        << indent << "TextureOffsetArray: " << this->TextureOffsetArray << "\n"
