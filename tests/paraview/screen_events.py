@@ -40,6 +40,12 @@ class Screen:
         self.x11.XSync(self.display, 0)
         time.sleep(0.2)
 
+    def key(self, symbol, down):
+        code = self.x11.XKeysymToKeycode(self.display, ctypes.c_ulong(symbol))
+        self.test.XTestFakeKeyEvent(self.display, code, int(down), ctypes.c_ulong(0))
+        self.x11.XSync(self.display, 0)
+        time.sleep(0.2)
+
     def drag(self, start, end, steps=8):
         self.move(*start)
         self.move(start[0] + 1, start[1])

@@ -171,3 +171,44 @@ deform.GetExecutive().AddObserver("ErrorEvent", lambda caller, event: errors.app
 deform.SetDeformation(0, 0, 0, -1, 1, 0, 0, 1)
 deform.Update()
 assert errors
+
+# A point of the deformed surface is told by where it is in the list's (u, v): on top of a bump, on its underside, between points, in texture coordinates.
+from vtkmodules.vtkFiltersSources import vtkSphereSource  # noqa: E402
+
+ball = vtkSphereSource()
+ball.SetRadius(1)
+ball.SetThetaResolution(48)
+ball.SetPhiResolution(49)
+ball.SetOutputPointsPrecision(1)
+picked = anamorph.vtkAnamorphDeform()
+assert picked.GetPickedParameters() == (0, 0, 0, 0)
+picked.SetInputConnection(ball.GetOutputPort())
+picked.AutomaticPlaneOff()
+picked.AddDeformation(0.2, 0.1, 0.5, 0.6, 0.3, 0, 0.7)
+picked.Update()
+flat, bent = ball.GetOutput(), picked.GetOutput()
+time = picked.GetMTime()
+for cell in range(0, flat.GetNumberOfCells(), 97):
+    ids = [flat.GetCell(cell).GetPointId(i) for i in range(3)]
+    for shares in ((1, 0, 0), (0.2, 0.3, 0.5), (0.5, 0.5, 0)):
+        at, was = ([sum(s * mesh.GetPoint(i)[c] for s, i in zip(shares, ids)) for c in range(3)] for mesh in (bent, flat))
+        picked.PickAt(*at)
+        assert picked.GetPickedPoint() == tuple(at)
+        u, v, w, found = picked.GetPickedParameters()
+        assert found == 1 and max(abs(a - b) for a, b in zip((u, v, w), was)) < 1e-9, (at, was, (u, v, w))
+assert picked.GetMTime() == time
+# The first of what a line meets: the top from above, the other side from below; nothing beside the ball.
+for x, y, up in ((0.1, 0.2, 1), (0.1, 0.2, -1), (0, -0.9, 1)):
+    picked.PickOnLine(0, 0, 9 * up, 2 * x, 2 * y, -9 * up)
+    found, at = picked.GetPickedParameters(), picked.GetPickedPoint()
+    assert abs(at[0] - x * (9 - at[2] * up) / 9) < 1e-9 and at[2] * up > 0 and found[3] == 1, (at, found)
+    assert found[2] * up > 0 and abs(math.hypot(*found[:3]) - 1) < 0.01, found
+picked.PickOnLine(3, 0, 9, 3, 0, -9)
+assert picked.GetPickedParameters() == (0, 0, 0, 0)
+picked.SetInputConnection(plane.GetOutputPort())
+picked.SetParameterModeToTextureCoordinates()
+picked.RemoveAllDeformations()
+picked.AddDeformation(0.5, 0.5, 0.2, 0.2, 0, 0, 0.5)
+picked.Update()
+picked.PickAt(*picked.GetOutput().GetPoint(10 * 21 + 12))
+assert max(abs(a - b) for a, b in zip(picked.GetPickedParameters(), (0.6, 0.5, 0, 1))) < 1e-6

@@ -15,6 +15,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTriangle.h"
 
 namespace anamorph_vtk {
 namespace {
@@ -435,6 +436,74 @@ void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>&
         frame[3 + c] = d[c];
         frame[6 + c] = e[c];
     }
+}
+
+PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                       const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                       const std::vector<vtkSmartPointer<vtkPointSet>>& deformed) {
+    PickedPlace place;
+    if (!std::isfinite(at.x + at.y + at.z)) return place;
+    double nearest = std::numeric_limits<double>::infinity();
+    vtkNew<vtkTriangle> triangle;
+    for (std::size_t m = 0; m < std::min({meshes.size(), undeformed.size(), deformed.size()}); ++m) {
+        if (!meshes[m]) continue;
+        const std::vector<glm::dvec2>& parameters = meshes[m]->parameters();
+        const auto offer = [&](const std::array<vtkIdType, 3>& ids) {
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 corner = point_of(deformed[m], ids[static_cast<std::size_t>(i)]);
+                triangle->GetPoints()->SetPoint(i, &corner.x);
+            }
+            double closest[3], coordinates[3], square, shares[3];
+            int part;
+            if (triangle->EvaluatePosition(&at.x, closest, part, coordinates, square, shares) < 0) return;
+            if (!(square < nearest)) return;
+            PickedPlace here;
+            double sum = 0;
+            for (double& share : shares) sum += share = std::max(share, 0.0);
+            for (std::size_t i = 0; i < 3; ++i) {
+                here.parameters += shares[i] / sum * parameters[static_cast<std::size_t>(ids[i])];
+                here.point += shares[i] / sum * point_of(undeformed[m], ids[i]);
+            }
+            here.found = std::isfinite(here.parameters.x + here.parameters.y);
+            if (!here.found) return;
+            nearest = square;
+            place = here;
+        };
+        for_each_surface_cell(undeformed[m], [&](vtkIdType count, const vtkIdType* p) {
+            for (vtkIdType i = 1; i + 1 < count; ++i) offer({p[0], p[i], p[i + 1]});
+        });
+    }
+    return place;
+}
+
+std::optional<glm::dvec3> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
+                                       const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                                       const std::vector<vtkSmartPointer<vtkPointSet>>& deformed) {
+    const double beside = 1e-10 * glm::length(to - from);  // of an edge, whose two triangles round apart
+    std::optional<glm::dvec3> found;
+    double first = std::numeric_limits<double>::infinity();
+    vtkNew<vtkTriangle> triangle;
+    for (std::size_t m = 0; m < std::min(undeformed.size(), deformed.size()); ++m) {
+        if (!deformed[m]->GetPoints()) continue;
+        for_each_surface_cell(undeformed[m], [&](vtkIdType count, const vtkIdType* p) {
+            for (vtkIdType i = 1; i + 1 < count; ++i) {
+                const std::array<vtkIdType, 3> ids = {p[0], p[i], p[i + 1]};
+                for (int k = 0; k < 3; ++k) {
+                    const glm::dvec3 corner = point_of(deformed[m], ids[static_cast<std::size_t>(k)]);
+                    triangle->GetPoints()->SetPoint(k, &corner.x);
+                }
+                double along, coordinates[3];
+                glm::dvec3 met;
+                int part;
+                if (!triangle->IntersectWithLine(&from.x, &to.x, beside, along, &met.x, coordinates, part) ||
+                    !(along < first))
+                    continue;
+                first = along;
+                found = met;
+            }
+        });
+    }
+    return found;
 }
 
 }  // namespace anamorph_vtk

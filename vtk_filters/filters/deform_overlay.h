@@ -47,6 +47,23 @@ void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>&
                 const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
                 const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]);
 
+/// What of an undeformed surface is at a point of the deformed one.
+struct PickedPlace {
+    glm::dvec2 parameters{0.0};
+    glm::dvec3 point{0.0};  ///< undeformed
+    bool found = false;
+};
+
+/// Finds what is at the point of the deformed meshes that is nearest to one in space; between points of a triangle in their shares.
+PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                       const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                       const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
+
+/// Finds the point where a line first meets the deformed meshes; none if it misses them.
+std::optional<glm::dvec3> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
+                                       const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                                       const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
+
 /// Finds the part of undeformed meshes that is over the centre of a bump, of several the one nearest to it in depth: the depth there, an
 /// extent in depth, the turn that lays the depth along the normal (a mean of those of the cells at the corners of that part), and V along it,
 /// or against it where V is. What is not found is left as it is.

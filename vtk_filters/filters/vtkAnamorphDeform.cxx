@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -250,6 +251,8 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "NumberOfPointsComputed: " << this->NumberOfPointsComputed << "\n"
        << indent << "NumberOfUndefinedPoints: " << this->NumberOfUndefinedPoints << "\n"
        << indent << "SelectedDeformation: " << this->SelectedDeformation << "\n"
+       << indent << "PickedPoint: " << this->PickedPoint[0] << " " << this->PickedPoint[1] << " "
+       << this->PickedPoint[2] << "\n"
        << indent << "Controller: " << this->Controller.Get() << "\n"
        << indent << "DeformationList:\n";
     this->DeformationList->PrintSelf(os, indent.GetNextIndent());
@@ -540,6 +543,34 @@ double* vtkAnamorphDeform::GetSelectedFrame() {
     anamorph_vtk::find_frame({numbers[0], numbers[1]}, this->Meshes->meshes, this->Meshes->undeformed,
                              this->Meshes->deformed, this->SelectedFrame);
     return this->SelectedFrame;
+}
+
+void vtkAnamorphDeform::PickAt(double x, double y, double z) {
+    this->PickedPoint[0] = x;
+    this->PickedPoint[1] = y;
+    this->PickedPoint[2] = z;
+}
+
+void vtkAnamorphDeform::PickOnLine(double from_x, double from_y, double from_z, double to_x, double to_y,
+                                   double to_z) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const glm::dvec3 met = anamorph_vtk::find_on_line({from_x, from_y, from_z}, {to_x, to_y, to_z},
+                                                      this->Meshes->undeformed, this->Meshes->deformed)
+                               .value_or(glm::dvec3(none));
+    this->PickAt(met.x, met.y, met.z);
+}
+
+double* vtkAnamorphDeform::GetPickedParameters() {
+    std::fill_n(this->PickedParameters, 4, 0.0);
+    const double* const at = this->PickedPoint;
+    const anamorph_vtk::PickedPlace place = anamorph_vtk::find_place(
+        {at[0], at[1], at[2]}, this->Meshes->meshes, this->Meshes->undeformed, this->Meshes->deformed);
+    if (!place.found) return this->PickedParameters;
+    this->PickedParameters[0] = place.parameters.x;
+    this->PickedParameters[1] = place.parameters.y;
+    if (this->Meshes->on_plane) this->PickedParameters[2] = this->Meshes->used_plane.depth(place.point);
+    this->PickedParameters[3] = 1;
+    return this->PickedParameters;
 }
 
 vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,

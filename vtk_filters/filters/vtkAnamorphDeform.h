@@ -327,6 +327,15 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * surface near it.
      */
     double* GetSelectedAnchor() VTK_SIZEHINT(9);
+    /**
+     * What is at the point of the deformed surface that is nearest to PickedPoint, by the last execution and on this rank: u, v, the
+     * depth w from the plane (0 for texture coordinates), and 1; all 0 where there is no surface. PickOnLine() takes the point where a
+     * line first meets the deformed surface, or none (not a number). Picking does not make the filter execute.
+     */
+    void PickAt(double x, double y, double z);
+    void PickOnLine(double from_x, double from_y, double from_z, double to_x, double to_y, double to_z);
+    vtkGetVector3Macro(PickedPoint, double);
+    double* GetPickedParameters() VTK_SIZEHINT(4);
     ///@}
 
     vtkMTimeType GetMTime() override;
@@ -370,6 +379,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     int OutputPointsPrecision = DEFAULT_PRECISION;
     int SelectedDeformation = 0;
     double SelectedHeights[2] = {}, SelectedFrame[9] = {}, SelectedAnchor[9] = {};
+    double PickedPoint[3] = {}, PickedParameters[4] = {};
     bool ComputeFolds = false;
     double LeastJacobian = 1, LeastJacobianPoint[3] = {};
     double ErrorBound = 0;

@@ -9,11 +9,18 @@
 #include <vector>
 
 #include "deformation_frame.h"
+#include "session_views.h"
+#include "vtkClientServerStream.h"
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
+#include "vtkRenderer.h"
+#include "vtkSMOutputPort.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMProxySelectionModel.h"
+#include "vtkSMRenderViewProxy.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMTrace.h"
 #include "vtkSmartPointer.h"
 
 using namespace anamorph_paraview;
@@ -51,8 +58,11 @@ std::vector<double> numbers_of(vtkSMProxy* proxy, const char* name) {
     return vtkSMPropertyHelper(proxy, name, true).GetDoubleArray();
 }
 
-std::optional<Point> point_of(vtkSMProxy* proxy, const char* name) {
-    const std::vector<double> numbers = numbers_of(proxy, name);
+/// `unchecked`: as a panel or a handle has it, before it is applied.
+std::optional<Point> point_of(vtkSMProxy* proxy, const char* name, bool unchecked = false) {
+    vtkSMPropertyHelper helper(proxy, name, true);
+    helper.SetUseUnchecked(unchecked);
+    const std::vector<double> numbers = helper.GetDoubleArray();
     if (numbers.size() != 3) return std::nullopt;
     return Point{numbers[0], numbers[1], numbers[2]};
 }
@@ -107,6 +117,8 @@ double height_of_handles(vtkSMProxy* proxy, const Row& row, bool put, double sur
     return put && at ? row.frame.parameters(*at)[2] : surface;
 }
 
+constexpr const char* kHandles[3] = {"SelectedCenter", "SelectedCorner", "SelectedTip"};
+
 // ---- The table ----
 
 /// A column of the table: which property has it, and where.
@@ -139,6 +151,9 @@ bool is_one_of(const std::string& name, std::initializer_list<const char*> names
 
 vtkSMAnamorphDeformProxy::vtkSMAnamorphDeformProxy() : Pending(std::make_unique<Edits>()) {
     this->AddObserver(vtkCommand::UpdatePropertyEvent, this, &vtkSMAnamorphDeformProxy::PropertyPushed);
+    this->Mouse =
+        std::make_unique<ViewMouse>([this](vtkSMRenderViewProxy* view, const std::array<int, 2>& at,
+                                           bool control) { this->ViewClicked(view, at[0], at[1], control); });
 }
 vtkSMAnamorphDeformProxy::~vtkSMAnamorphDeformProxy() = default;
 
@@ -149,6 +164,10 @@ void vtkSMAnamorphDeformProxy::PrintSelf(ostream& os, vtkIndent indent) {
 int vtkSMAnamorphDeformProxy::ReadXMLAttributes(vtkSMSessionProxyManager* manager, vtkPVXMLElement* element) {
     const int read = this->Superclass::ReadXMLAttributes(manager, element);
     this->InStep = false;
+    for (const char* name : kHandles)
+        if (vtkSMProperty* handle = this->GetProperty(name))
+            handle->AddObserver(vtkCommand::UncheckedPropertyModifiedEvent, this,
+                                &vtkSMAnamorphDeformProxy::HandleDragged);
     return read;
 }
 
@@ -201,6 +220,7 @@ void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
         this->Edited("Deformations");
         this->ShowBumps();
     }
+    this->DraggedRow.clear();  // what is applied is what the handles say, or they are put back
     // Not before: who sets a list may change its length first, and its numbers then.
     this->RemoveDepths();
     if (!this->FilesPending) {
@@ -421,7 +441,8 @@ void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
 void vtkSMAnamorphDeformProxy::PostUpdateData(bool using_cache) {
     const bool updated = this->NeedsUpdate;
     this->Superclass::PostUpdateData(using_cache);
-    if (!updated) return;
+    this->Mouse->watch(this);
+    if (!updated || !this->DraggedRow.empty()) return;
     const WhileHeld step(this->InStep);
     this->TakeUsedPlane();
     const bool moved = this->TakeHeights();
@@ -473,6 +494,135 @@ bool vtkSMAnamorphDeformProxy::TakeHeights() {
     for (std::size_t i = 0; i < 2; ++i)
         this->Heights[i] = i < heights.size() && std::isfinite(heights[i]) ? heights[i] : 0;
     return before != Point{this->Heights[0], this->Heights[1], 0};
+}
+
+// ---- The mouse ----
+
+/// Past the properties. A handle that is put back brings the row back.
+void vtkSMAnamorphDeformProxy::HandleDragged() {
+    if (this->InStep || !this->ObjectsCreated || (!this->Mouse->is_down() && this->DraggedRow.empty()))
+        return;
+    std::vector<double> list = numbers_of(this, "Deformations");
+    const std::optional<Row> row = selected_row(this, list);
+    if (!row) return;
+    const std::vector<double> before(row->numbers, row->numbers + kPartColumns[0]);
+    const std::optional<Point> center = point_of(this, "SelectedCenter", true),
+                               corner = point_of(this, "SelectedCorner", true),
+                               tip = point_of(this, "SelectedTip", true);
+    if (center != point_of(this, "SelectedCenter")) row->move_center(*center);
+    if (corner != point_of(this, "SelectedCorner")) row->move_corner(*corner);
+    if (tip != point_of(this, "SelectedTip")) row->move_tip(*tip, *center);
+    const std::vector<double> now(row->numbers, row->numbers + kPartColumns[0]);
+    if (now == (this->DraggedRow.empty() ? before : this->DraggedRow)) return;
+    vtkClientServerStream stream;
+    stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "SetDeformation"
+           << vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt();
+    for (const double number : now) stream << number;
+    stream << vtkClientServerStream::End;
+    this->ExecuteStream(stream);
+    this->DraggedRow = now;
+    this->MarkDirty(this);
+    draw_views(this);
+    if (now == before) this->DraggedRow.clear();
+}
+
+/// Is this the source that the panel shows?
+bool vtkSMAnamorphDeformProxy::IsActive() {
+    vtkSMProxySelectionModel* sources = this->GetSessionProxyManager()->GetSelectionModel("ActiveSources");
+    vtkSMProxy* active = sources ? sources->GetCurrentProxy() : nullptr;
+    if (auto* port = vtkSMOutputPort::SafeDownCast(active)) active = port->GetSourceProxy();
+    return active == this;
+}
+
+void vtkSMAnamorphDeformProxy::ViewClicked(vtkSMProxy* proxy, double x, double y, bool control) {
+    auto* view = vtkSMRenderViewProxy::SafeDownCast(proxy);
+    if (!view || !this->ObjectsCreated || !this->DraggedRow.empty() || !this->IsActive()) return;
+    // The ray of the pixel, of parallel views too (ParaView's own ConvertDisplayToPointOnSurface has all rays begin at the camera).
+    vtkClientServerStream stream;
+    stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "PickOnLine";
+    vtkRenderer* renderer = view->GetRenderer();
+    for (const double depth : {0.0, 1.0}) {
+        renderer->SetDisplayPoint(x, y, depth);
+        renderer->DisplayToWorld();
+        const double* const world = renderer->GetWorldPoint();
+        for (int c = 0; c < 3; ++c) stream << world[c] / world[3];
+    }
+    stream << vtkClientServerStream::End;
+    this->ExecuteStream(stream);
+    this->UpdatePropertyInformation(this->GetProperty("PickedParameters"));
+    const std::vector<double> place = numbers_of(this, "PickedParameters");
+    if (place.size() != 4 || place[3] == 0) return;
+    if (control) {
+        this->AddBump(place[0], place[1], place[2]);
+    } else if (const int bump = this->FindBump(place[0], place[1]); bump >= 0) {
+        this->SelectBump(bump);
+    }
+}
+
+/// The bump of whose middle a place is nearest, in extents; -1 if it is within none.
+int vtkSMAnamorphDeformProxy::FindBump(double u, double v) {
+    const std::vector<double> list = numbers_of(this, "Deformations");
+    int found = -1;
+    double nearest = 1;
+    for (std::size_t i = 0; (i + 1) * kPartColumns[0] <= list.size(); ++i) {
+        const double* row = list.data() + i * kPartColumns[0];
+        const double across = (u - row[kCenter]) / row[kExtent],
+                     up = (v - row[kCenter + 1]) / row[kExtent + 1];
+        if (const double apart = std::hypot(across, up); apart <= nearest) {
+            nearest = apart;
+            found = static_cast<int>(i);
+        }
+    }
+    return found;
+}
+
+void vtkSMAnamorphDeformProxy::SelectBump(int position) {
+    if (position == vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt()) return;
+    {
+        SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this);
+        vtkSMPropertyHelper(this, "SelectedDeformation").Set(position);
+        this->UpdateVTKObjects();
+        const WhileHeld step(this->InStep);
+        this->TakeHeights();
+        *this->Pending = Edits();
+        this->ShowHandles(true);
+        this->UpdateVTKObjects();
+    }
+    draw_views(this);
+}
+
+/// A bump of the size of the selected one, or of a new list's, becomes the selected one.
+void vtkSMAnamorphDeformProxy::AddBump(double u, double v, double w) {
+    {
+        SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this);
+        std::vector<double> table = numbers_of(this, "Bumps");
+        const std::size_t rows = table.size() / kTableColumns;
+        const int selected = vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt();
+        if (rows == 0) {
+            this->GetProperty("Deformations")->ResetToDomainDefaults();
+            table = numbers_of(this, "Bumps");
+            table.resize(kTableColumns, 1);
+        } else {
+            const std::size_t like = std::min(static_cast<std::size_t>(std::max(selected, 0)), rows - 1);
+            const std::vector<double> row(
+                table.begin() + static_cast<std::ptrdiff_t>(like * kTableColumns),
+                table.begin() + static_cast<std::ptrdiff_t>((like + 1) * kTableColumns));
+            table.insert(table.end(), row.begin(), row.end());
+        }
+        double* const added = table.data() + rows * kTableColumns;
+        added[0] = u, added[1] = v;
+        const bool on_plane = vtkSMPropertyHelper(this, "ParameterMode").GetAsInt() == 0;
+        // Its own in depth and turn, and neither an image nor a name.
+        added[2] = w, added[5] = on_plane ? std::min(added[3], added[4]) : 0;
+        added[10] = 1, added[11] = 0;
+        const double plain[7] = {1, 0, 0, 0, 0, 0, 0};
+        std::copy_n(plain, 7, added + 12);
+        set_numbers(this, "Bumps", table.data(), table.size());
+        vtkSMPropertyHelper(this, "SelectedDeformation").Set(static_cast<int>(rows));
+        this->UpdateVTKObjects();
+        if (on_plane) this->AnchorSelected();
+    }
+    draw_views(this);
 }
 
 void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* name) {

@@ -23,6 +23,11 @@
  * The automatic plane is that of the last update, or before one that of the input's bounds. The command
  * FreezePlane updates the filter and makes it Origin, Axis1 and Axis2, with AutomaticPlane off.
  *
+ * In ParaView's window, dragging a handle shows the surface live: the server's filter has the row that the handle says, past the properties, which
+ * undo, traces and states follow; these change when it is applied. A click on the surface selects the bump it is on (of several the one that it is
+ * the most in the middle of), and with Ctrl makes a new one there, anchored to the surface, or at the (u, v) of texture
+ * coordinates: of a filter that is the active source.
+ *
  * Setting ImportFile takes the list from a file on the server, setting ExportFile writes it to one; both are
  * empty again when that is done.
  *
@@ -34,8 +39,12 @@
 #include "AnamorphServerManagerModule.h"  // for the export macro
 #include "vtkSMAnamorphSourceProxy.h"
 
-#include <memory>  // for the edits
+#include <memory>  // for the edits and the mouse
 #include <vector>  // for lists
+
+namespace anamorph_paraview {
+class ViewMouse;
+}
 
 class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamorphSourceProxy {
   public:
@@ -80,6 +89,12 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void AnchorSelected();
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
+    void HandleDragged();
+    void ViewClicked(vtkSMProxy* view, double x, double y, bool control);
+    bool IsActive();
+    int FindBump(double u, double v);
+    void SelectBump(int position);
+    void AddBump(double u, double v, double w);
 
     bool InStep = true;         ///< one side follows the other, or not all properties are there yet
     bool HandlesPut = false;    ///< SelectedCenter has been written to
@@ -91,6 +106,9 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool ListEdited = false;         ///< Deformations has been written to since
     double Heights[2] = {};          ///< of the handles of the centre and the corner over the plane
     std::unique_ptr<Edits> Pending;  ///< edits since the last update
+    std::vector<double>
+        DraggedRow;  ///< that the server has in place of the selected one; none if it has that
+    std::unique_ptr<anamorph_paraview::ViewMouse> Mouse;
 };
 
 #endif

@@ -1,34 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkSMAnamorphProjectionProxy.h"
 
+#include "session_views.h"
 #include "vtkClientServerStream.h"
 #include "vtkCommand.h"
 #include "vtkInteractorStyle.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMProxyIterator.h"
 #include "vtkSMRenderViewProxy.h"
-#include "vtkSMSessionProxyManager.h"
 
 vtkStandardNewMacro(vtkSMAnamorphProjectionProxy);
 
 namespace {
 constexpr unsigned long kLeftAlone = 400;  // milliseconds
-
-/// Calls `call` with every proxy of a group until it returns true.
-template <class Call>
-bool any_proxy(vtkSMProxy* of, const char* group, const Call& call) {
-    vtkSMSessionProxyManager* manager = of->GetSessionProxyManager();
-    if (!manager) return false;
-    vtkNew<vtkSMProxyIterator> each;
-    each->SetSessionProxyManager(manager);
-    each->SetModeToOneGroup();
-    for (each->Begin(group); !each->IsAtEnd(); each->Next())
-        if (call(each->GetProxy())) return true;
-    return false;
-}
 }  // namespace
 
 vtkSMAnamorphProjectionProxy::vtkSMAnamorphProjectionProxy() = default;
@@ -44,18 +29,13 @@ void vtkSMAnamorphProjectionProxy::PrintSelf(ostream& os, vtkIndent indent) {
 
 /// The interactor of a view in a window of Qt; null where there is none.
 vtkRenderWindowInteractor* vtkSMAnamorphProjectionProxy::FindWindow() {
-    vtkRenderWindowInteractor* found = nullptr;
-    any_proxy(this, "views", [&](vtkSMProxy* proxy) {
-        auto* view = vtkSMRenderViewProxy::SafeDownCast(proxy);
-        vtkRenderWindowInteractor* interactor = view ? view->GetInteractor() : nullptr;
-        if (interactor && interactor->IsA("QVTKInteractor")) found = interactor;
-        return found != nullptr;
-    });
-    return found;
+    for (vtkSMRenderViewProxy* view : anamorph_paraview::render_views(this))
+        if (vtkRenderWindowInteractor* window = anamorph_paraview::window_of(view)) return window;
+    return nullptr;
 }
 
 bool vtkSMAnamorphProjectionProxy::IsAnimated() {
-    return any_proxy(this, "animation", [&](vtkSMProxy* cue) {
+    return anamorph_paraview::any_proxy(this, "animation", [&](vtkSMProxy* cue) {
         return cue->GetProperty("AnimatedProxy") &&
                vtkSMPropertyHelper(cue, "AnimatedProxy").GetAsProxy() == this;
     });
@@ -119,8 +99,5 @@ void vtkSMAnamorphProjectionProxy::Refine() {
     this->GiveTime(0);
     this->MarkDirty(this);
     this->InStep = false;
-    any_proxy(this, "views", [](vtkSMProxy* proxy) {
-        if (auto* view = vtkSMRenderViewProxy::SafeDownCast(proxy)) view->StillRender();
-        return false;
-    });
+    anamorph_paraview::draw_views(this);
 }

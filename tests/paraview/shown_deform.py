@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Deform of a sphere in ParaView's window, with its handles: what the mouse does there, and what becomes of the list."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+from display import xvfb_run
+
+# The view's background is of a color that nothing else has, by which it is found on the screen.
+SCRIPT = """
+import json, os
+from paraview.simple import *
+LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
+GetSettingsProxy("GeneralSettings").AutoApply = {auto_apply}
+sphere = {surface}
+sphere.UpdatePipeline()
+deform = AnamorphDeform(Input=sphere, AutomaticPlane=0, {settings})
+view = GetActiveViewOrCreate("RenderView")
+view.UseColorPaletteForBackground, view.Background, view.OrientationAxesVisibility = 0, [0, 1, 0], 0
+try:
+    view.BackgroundColorMode = "Single Color"
+except Exception:
+    pass
+Show(deform, view)
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = {position}, {focus}, {up}
+view.CameraParallelProjection, view.CameraParallelScale = 1, 2.2
+SetActiveSource(deform)
+Render(view)
+told = [None]
+
+
+def tell(*_):
+    renderer = view.GetRenderer()
+    handles = {{}}
+    for name in ("SelectedCenter", "SelectedCorner", "SelectedTip"):
+        renderer.SetWorldPoint(*deform.GetPropertyValue(name), 1)
+        renderer.WorldToDisplay()
+        handles[name] = list(renderer.GetDisplayPoint())
+    now = json.dumps({{"size": list(view.GetRenderWindow().GetSize()),
+                      "pixel": 2 * renderer.GetActiveCamera().GetParallelScale() / view.GetRenderWindow().GetSize()[1], "handles": handles,
+                      "list": list(deform.Deformations), "table": list(deform.Bumps), "selected": deform.SelectedDeformation,
+                      "bounds": list(deform.GetDataInformation().GetBounds()),
+                      "places": {{name: list(deform.GetPropertyValue(name)) for name in handles}}}})
+    if now != told[0]:
+        told[0] = now
+        with open({folder!r} + "/state.new", "w") as file:
+            file.write(now)
+        os.replace({folder!r} + "/state.new", {folder!r} + "/state")
+
+
+view.GetRenderWindow().AddObserver("EndEvent", tell)
+tell()
+"""
+
+
+def view_on(picture):
+    """The rectangle of the view: left, top, right, bottom."""
+    rows, columns = ((picture[:, :, 1] > 200) & (picture[:, :, 0] < 60) & (picture[:, :, 2] < 60)).nonzero()
+    assert len(rows) > 10000, "the view is not seen"
+    return columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
+
+
+class Shown:
+    """ParaView's window, which runs the script of a folder."""
+
+    def __init__(self, folder):
+        from screen_events import Screen
+        self.folder = folder
+        self.program = subprocess.Popen(["paraview", "--script=" + folder + "/script.py"])
+        self.screen = Screen()
+        self.wait_for(lambda: os.path.exists(folder + "/state"))
+        time.sleep(6)  # panels are made after the script, and the welcome is shown
+        self.screen.close_dialog()
+        self.left, top, right, self.bottom = view_on(self.screen.picture())
+        size = self.state()["size"]
+        assert abs(right - self.left - size[0]) <= 2 and abs(self.bottom - top - size[1]) <= 2, (self.left, top, right, self.bottom)
+        self.pixel = self.state()["pixel"]  # in space; the camera is reset as the panels are made
+
+    def state(self):
+        with open(self.folder + "/state") as file:
+            return json.load(file)
+
+    def wait_for(self, condition):
+        deadline = time.monotonic() + 150
+        while not condition():
+            assert time.monotonic() < deadline and self.program.poll() is None, "nothing happens"
+            time.sleep(0.3)
+
+    def of_view(self, at):
+        """A point of the view, pixels from its lower left, on the screen."""
+        return self.left + at[0], self.bottom - at[1]
+
+    def surface(self):
+        """Which pixels of the view are not its background."""
+        picture = self.screen.picture()[self.bottom - self.state()["size"][1]:self.bottom, self.left:self.left + self.state()["size"][0]]
+        return ~((picture[:, :, 1] > 200) & (picture[:, :, 0] < 60) & (picture[:, :, 2] < 60))
+
+    def save(self, name):
+        keep = os.environ.get("ANAMORPH_KEEP_PICTURES")
+        if keep:
+            picture = self.screen.picture()
+            with open(os.path.join(keep, name + ".ppm"), "wb") as file:
+                file.write(b"P6\n%d %d\n255\n" % (picture.shape[1], picture.shape[0]) + picture.tobytes())
+
+    def close(self):
+        self.program.kill()
+        self.program.wait(timeout=60)
+
+
+def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolution=64, PhiResolution=65)",
+        settings="Deformations=[0, 0, .5, .5, 0, 0, .5, 0, 1], Depths=[0, 0, 1]", position="[0, -7, .3]", focus="[0, 0, .3]",
+        up="[0, 0, 1]"):
+    """Runs `drive` of a window in a display of its own; `file` is the test, which calls this again there."""
+    if len(sys.argv) > 1:
+        shown = Shown(sys.argv[1])
+        try:
+            drive(shown)
+        finally:
+            shown.close()
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        os.makedirs(folder + "/.config")
+        with open(folder + "/script.py", "w") as script:
+            script.write(SCRIPT.format(folder=folder, auto_apply=auto_apply, surface=surface, settings=settings, position=position,
+                                       focus=focus, up=up))
+        environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder}
+        done = subprocess.run([*xvfb_run(number), sys.executable, file, folder], env=environment, capture_output=True, text=True,
+                              timeout=390)
+        assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
