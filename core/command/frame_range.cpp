@@ -65,6 +65,9 @@ void FrameRange::for_each(Motion& motion, const std::function<void(const FigureF
 }
 
 std::string numbered_name(const std::string& pattern, int number) {
+    constexpr std::size_t kDigits = 4;
+    if (const std::size_t word = pattern.find(kFrameWord); word != std::string::npos)
+        return pattern.substr(0, word) + padded(number, kDigits) + pattern.substr(word + kFrameWord.size());
     const std::size_t hash = pattern.find('#');
     if (hash != std::string::npos) {
         const std::size_t end = std::min(pattern.find_first_not_of('#', hash), pattern.size());
@@ -80,7 +83,8 @@ std::string numbered_name(const std::string& pattern, int number) {
         }
     }
     const std::filesystem::path path(pattern);
-    return (path.parent_path() / path.stem()).string() + "." + padded(number, 4) + path.extension().string();
+    return (path.parent_path() / path.stem()).string() + "." + padded(number, kDigits) +
+           path.extension().string();
 }
 
 }  // namespace anamorph::command

@@ -28,8 +28,11 @@ struct FrameRange {
 
 std::optional<FrameRange> parse_frame_range(std::string_view text);
 
-/// `pattern` with the number in place of "%04d" (any width), or of "#" (each # is a digit); otherwise before
-/// the ending, in four digits.
+/// What stands for the number of a frame in names of files and recipes.
+inline constexpr std::string_view kFrameWord = "{frame}";
+
+/// `pattern` with the number in place of "{frame}" (four digits), of "%04d" (any width), or of "#" (each # is a digit); otherwise
+/// before the ending, in four digits.
 std::string numbered_name(const std::string& pattern, int number);
 
 }  // namespace anamorph::command

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 
 #include "anamorph/error.h"
 
@@ -25,7 +26,7 @@ struct Unfinished {
     std::atomic<bool> used = false;
     char name[kLongest] = {};
 };
-constinit std::array<Unfinished, 4> g_unfinished{};
+constinit std::array<Unfinished, 260> g_unfinished{};  // of one thread each, and a few more
 
 /// Takes away what is unfinished, and ends the program as the signal would have.
 extern "C" void anamorph_remove_unfinished(int signal) {
@@ -51,6 +52,8 @@ void handle_signals() {
 /// nullptr where there is no room: the file is then not taken away after a signal.
 Unfinished* remember(const std::string& name) {
     if (name.size() >= Unfinished::kLongest) return nullptr;
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
     for (Unfinished& file : g_unfinished) {
         if (file.used.load()) continue;
         std::memcpy(file.name, name.c_str(), name.size() + 1);

@@ -3,29 +3,33 @@
 
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <string>
 
 namespace anamorph::command {
 
-/// A bar on the standard error, where that is a terminal, once work has taken half a second.
+/// A bar with the time that is left, on the standard error where that is a terminal, once work has taken half a second. Thread safe.
 class Progress {
   public:
-    /// `total` says how much there is to do, or 0 where that is not known; it is asked when the bar is
-    /// first shown.
-    explicit Progress(std::function<int()> total);
+    /// `total` says how many of `unit` there are to do, or 0 where that is not known; it is asked when the bar is first shown.
+    explicit Progress(std::function<long long()> total, std::string unit = "frames");
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void advance();
+    void advance(long long done = 1);
     /// Makes way for a line of text.
     void clear();
 
   private:
-    std::function<int()> m_total_of;
+    using Clock = std::chrono::steady_clock;
+
+    std::mutex m_mutex;
+    std::function<long long()> m_total_of;
+    std::string m_unit;
     bool m_terminal, m_shown = false;
-    int m_done = 0, m_total = -1;
-    std::chrono::steady_clock::time_point m_next;
+    long long m_done = 0, m_total = -1;
+    Clock::time_point m_begin, m_next;
 };
 
 }  // namespace anamorph::command

@@ -14,6 +14,7 @@
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
+#include "draw.h"
 #include "explain.h"
 #include "part_file.h"
 #include "picture_reader.h"
@@ -41,7 +42,8 @@ void declare_recipes() {
 void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     struct Given {
         std::string recipe, output;
-        std::optional<std::string> part, crop;
+        std::optional<std::string> part, crop, frames;
+        int jobs = 0;
         std::vector<std::string> names;
         int subimage = 0;
         bool timed = false;
@@ -58,23 +60,41 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
         };
     });
 
-    CLI::App* draw = app.add_subcommand("draw", "Draw a recipe's picture into a file, or a part of it");
-    draw->add_option("RECIPE", given->recipe, "view.pano, or pano.exr.pano?to=rectilinear&fov=90")
+    CLI::App* draw_command = app.add_subcommand(
+        "draw", "Draw a recipe's picture into a file, or a part of it, or frames of a film");
+    draw_command
+        ->add_option("RECIPE", given->recipe,
+                     "view.pano, or pano.exr.pano?to=rectilinear&fov=90; {frame} in it is the frame's number")
         ->required();
-    draw->add_option("-o,--output", given->output, "The file; its ending says the format")
+    draw_command
+        ->add_option("-o,--output", given->output,
+                     "The file; its ending says the format. Of frames, {frame} stands for the number in four "
+                     "digits, which else goes before the ending")
         ->required()
         ->option_text("FILE");
-    draw->add_option("--part", given->part,
-                     "A share of the picture's tiles, 3/8 the third of eight, for anamorph join; what FILE "
-                     "has of it already is not drawn again")
-        ->option_text("I/N");
-    draw->callback([=, &run] {
+    CLI::Option* part =
+        draw_command
+            ->add_option(
+                "--part", given->part,
+                "A share of the picture's tiles, 3/8 the third of eight, for anamorph join; what FILE "
+                "has of it already is not drawn again")
+            ->option_text("I/N");
+    draw_command
+        ->add_option("--frames", given->frames,
+                     "The frames, with {frame} in RECIPE, by its key frame, or of its pictures from 0 on; by "
+                     "default all of these if FILE has {frame}")
+        ->option_text("A-B[xS]")
+        ->excludes(part);
+    draw_command
+        ->add_option("--jobs", given->jobs,
+                     "Threads that draw, each a frame where there are several; 0 is one a processor")
+        ->option_text("N [0]");
+    draw_command->callback([=, &run] {
         run = [=] {
             declare_recipes();
-            if (!given->part)
-                draw_picture_file(given->recipe, given->output);
-            else
-                draw_part(given->recipe, share_of(*given->part), given->output);
+            if (!given->part) return draw({given->recipe, given->output, given->frames, given->jobs});
+            use_threads(given->jobs);
+            draw_part(given->recipe, share_of(*given->part), given->output);
         };
     });
 

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <sstream>
 
 #include "anamorph/error.h"
@@ -296,7 +295,7 @@ void write_picture(const ImageSpec& picture, const std::string& output,
                    const std::function<void(std::int64_t row, std::vector<std::byte>& pixels)>& rows) {
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = 0;
-    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(output);
+    std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(output);
     if (!out) throw Error(OIIO::geterror());
     OutputFile file(output);
     if (!out->open(file.path(), spec)) throw Error(printable(output) + ": " + out->geterror());
@@ -313,6 +312,8 @@ void write_picture(const ImageSpec& picture, const std::string& output,
             throw Error(printable(output) + ": " + why_not(*out, output));
     }
     if (!out->close()) throw Error(printable(output) + ": " + why_not(*out, output));
+    // OpenImageIO's writer of EXR leaves the file of an environment open until it ends itself, for further levels.
+    out.reset();
     if (!has_last_row(file.path(), spec)) throw Error(printable(output) + ": " + why_cut_off(output));
     file.close();
 }
@@ -459,9 +460,9 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
     return hasher.hash();
 }
 
-void draw_picture_file(const std::string& recipe, const std::string& output) {
-    const std::unique_ptr<PictureReader> picture = open_picture(recipe);
-    const ImageSpec spec = single_spec(*picture, recipe);
+void draw_picture_file(PictureReader& picture, int subimage, const std::string& output,
+                       const std::function<void(std::int64_t tiles)>& done) {
+    const ImageSpec spec = picture.spec(subimage);
     const TileGrid tiles = tiles_of(spec);
     std::vector<std::byte> drawn;
     write_picture(spec, output, [&](std::int64_t row, std::vector<std::byte>& rows) {
@@ -470,8 +471,9 @@ void draw_picture_file(const std::string& recipe, const std::string& output) {
             n = tiles.together(i, end);
             const Box box = tiles.box(i, n);
             drawn.resize(bytes_of(spec, box));
-            picture->read(0, box, drawn.data());
+            picture.read(subimage, box, drawn.data());
             copy_to_rows(spec, box, drawn.data(), rows);
+            done(n);
         }
     });
 }

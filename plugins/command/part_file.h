@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,9 @@ std::int64_t draw_part(const std::string& recipe, const Share& share, const std:
 /// there, of one picture, and each tile has its hash. Returns the hash of the picture. Throws Error.
 PictureHash join_parts(std::vector<std::string> files, const std::string& output);
 
-/// Draws a recipe's picture as the file `output`. Throws Error.
-void draw_picture_file(const std::string& recipe, const std::string& output);
+/// Draws one of a recipe's pictures as the file `output`, which is there when it is whole. `drawn` is called with the number of tiles
+/// that were drawn since. Throws Error.
+void draw_picture_file(PictureReader& picture, int subimage, const std::string& output,
+                       const std::function<void(std::int64_t tiles)>& drawn);
 
 }  // namespace anamorph::command

@@ -20,18 +20,19 @@ namespace {
 /// A recipe, without what all of it would have to be planned for.
 class RecipePicture final : public PictureReader {
   public:
-    explicit RecipePicture(const std::string& name)
-        : m_content(open_recipe(name, {})), m_state(RecipeReader().load(name).identity) {}
+    RecipePicture(const std::string& name, const std::vector<Assignment>& given)
+        : m_name(name), m_given(given), m_content(open_recipe(name, given)) {}
     int subimages() override { return m_content->subimages(); }
     const ImageSpec& spec(int subimage) override { return m_content->header(subimage, 0); }
     void read(int subimage, const Box& box, std::byte* pixels) override {
         m_content->read(subimage, 0, box, pixels);
     }
-    std::string state() const override { return m_state; }
+    std::string state() const override { return RecipeReader().load(m_name, m_given).identity; }
 
   private:
+    std::string m_name;
+    std::vector<Assignment> m_given;
     std::shared_ptr<const Content> m_content;
-    std::string m_state;
 };
 
 /// A file that OpenImageIO reads, one row of tiles of ours after the other.
@@ -87,8 +88,8 @@ class FilePicture final : public PictureReader {
 
 }  // namespace
 
-std::unique_ptr<PictureReader> open_picture(const std::string& name) {
-    if (operation_of(name)) return std::make_unique<RecipePicture>(name);
+std::unique_ptr<PictureReader> open_picture(const std::string& name, const std::vector<Assignment>& given) {
+    if (operation_of(name)) return std::make_unique<RecipePicture>(name, given);
     return std::make_unique<FilePicture>(name);
 }
 

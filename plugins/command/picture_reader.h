@@ -11,6 +11,7 @@
 
 #include "anamorph/geometry/box.h"
 #include "anamorph/image/picture_hash.h"
+#include "anamorph/parameter/parameter.h"
 #include "anamorph/picture_tiles.h"
 
 namespace anamorph::command {
@@ -29,8 +30,9 @@ class PictureReader {
     virtual std::string state() const { return {}; }
 };
 
-/// Opens a recipe or a picture file. Throws Error.
-std::unique_ptr<PictureReader> open_picture(const std::string& name);
+/// Opens a recipe, of which `given` overrides keys, or a picture file. Throws Error.
+std::unique_ptr<PictureReader> open_picture(const std::string& name,
+                                            const std::vector<Assignment>& given = {});
 
 /// The hash of all of a picture.
 PictureHash hash_of(PictureReader& picture);

@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import unittest
 
 PROGRAM = os.environ["ANAMORPH"]
@@ -60,13 +61,58 @@ class Help(unittest.TestCase):
         self.assertEqual((status, error), (0, ""), words)
         return page.split()
 
+    def test_programs_beside_it(self):
+        for name in ("figure", "machine"):
+            alone = subprocess.run([f"{PROGRAM}-{name}", "--help"], capture_output=True, text=True, timeout=50)
+            self.assertEqual(run(name, "--help"), (0, alone.stdout, ""))
+
+    def test_new_recipes_have_every_key(self):
+        toys = "  toy " in run("help")[1]
+        for name, rows in tables():
+            if toys and name in ("pano", "mosaic", "drape"):
+                continue
+            status, text, error = run("new", name, "a picture #1.tif")
+            self.assertEqual((status, error), (0, ""), name)
+            self.assertLessEqual(max(len(line) for line in text.split("\n") if "=" not in line), 80)
+            paragraphs = text.strip().split("\n\n")[1:]
+            self.assertEqual([p.split("\n")[-1].lstrip("#").split("=")[0] for p in paragraphs], [row[0] for row in rows])
+            for paragraph, (key, default, unit, allowed, meaning) in zip(paragraphs, rows):
+                *comment, line = paragraph.split("\n")
+                self.assertEqual(" ".join(" ".join(c[2:] for c in comment).split()), " ".join(f"{meaning} {allowed}{unit and f' ({unit})'}".split()))
+                self.assertIn(line, ("#%s=%s" % (key, default), '%s="a picture #1.tif"' % key))
+            self.assertEqual(len(re.findall(r"(?m)^[^#\n]", text)), 1)
+
+    def test_new_recipes_are_drawn(self):
+        if not os.path.exists(os.path.join(os.path.dirname(PROGRAM), "anamorph-pictures")):
+            self.skipTest("this build has no OpenImageIO")
+        with tempfile.TemporaryDirectory() as folder:
+            def ok(*words):
+                result = subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True, timeout=100)
+                self.assertEqual((result.returncode, result.stderr), (0, ""), words)
+                return result.stdout
+
+            pathlib.Path(folder, "a.ppm").write_bytes(b"P6\n96 64\n255\n" + bytes(range(256)) * 72)
+            os.mkdir(os.path.join(folder, "sub"))
+            for name in re.findall(r"^  (\w+)  +\S", run("help")[1], re.MULTILINE):
+                needs = {"morph": ["a.ppm", "a.ppm"], "figure": []}.get(name, ["a.ppm"])
+                for recipe in ("x." + name, "sub/y." + name):
+                    ok("new", name, *needs, "-o", recipe)
+                    ok("draw", recipe, "-o", recipe.replace("/", "_") + ".{frame}.png")
+                    self.assertTrue(list(pathlib.Path(folder).glob(recipe.replace("/", "_") + ".*.png")), recipe)
+                again = subprocess.run([PROGRAM, "new", name, *needs, "-o", "x." + name], cwd=folder, capture_output=True, text=True, timeout=50)
+                self.assertEqual(again.returncode, 1)
+                self.assertIn(" is there already", again.stderr)
+            self.assertEqual([p for p in pathlib.Path(folder).rglob(".*")], [])
+
     def test_completes_command_lines(self):
-        self.assertEqual(self.completed("anamorph", ""), sorted("help run doctor hash draw join explain".split()))
+        self.assertEqual(self.completed("anamorph", ""), sorted("help new run doctor hash draw join explain figure machine bench".split()))
         self.assertEqual(self.completed("/usr/bin/anamorph", "d"), ["doctor", "draw"])
         self.assertEqual(self.completed("anamorph", "--v"), ["--version"])
         self.assertEqual(self.completed("anamorph", "help", "m"), ["map", "morph", "mosaic"])
         self.assertIn("--help", self.completed("anamorph-machine", "--"))
+        self.assertEqual(self.completed("anamorph", "new", "m"), ["map", "morph", "mosaic"])
         self.assertIn("svg", self.completed("anamorph-figure", ""))
+        self.assertEqual(self.completed("anamorph", "figure", "film", "--fp"), ["--fps"])
         self.assertIn("--fps", self.completed("anamorph-figure", "film", "--f"))
         for words in (["anamorph"], ["oiiotool", ""], ["anamorph", "draw", ""], ["anamorph", "draw", "a.nothing?"], ["anamorph", "x"]):
             self.assertEqual(self.completed(*words), [], words)
@@ -98,8 +144,13 @@ class Help(unittest.TestCase):
 
     def test_what_is_wrong_is_one_line(self):
         for arguments, message in (
-                (["help", "twist"], 'operation=twist: must be one of pano, '),
-                (["help", "a\nb\x1b"], "operation=a?b?: must be one of"),
+                (["help", "twist"], 'operation=twist: there is none of that name: must be one of pano, '),
+                (["help", "pana"], 'operation=pana: there is none of that name, perhaps pano is meant: must be one of pano, '),
+                (["new", "warpp"], ", perhaps warp is meant: must be"),
+                (["new", "pano", "a", "b"], "SOURCE=b: pano has 1 source at most"),
+                (["new", "pano", "-o", "view.warp"], "--output=view.warp: must end in .pano"),
+                (["drew"], "command=drew: there is none of that name, perhaps draw is meant: must be one of hash, "),
+                (["help", "a\nb\x1b"], "operation=a?b?: there is none of that name: must be one of"),
                 ([], "A subcommand is required"),
                 (["help", "pano", "warp"], "warp")):
             status, page, error = run(*arguments)

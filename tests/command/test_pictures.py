@@ -3,6 +3,7 @@
 says is what happens."""
 import os
 import pathlib
+import pty
 import re
 import resource
 import shutil
@@ -64,6 +65,10 @@ class Pictures(unittest.TestCase):
         self.assertEqual(self.hash("sky.pano?tile=64")[0], whole)
         self.assertEqual(self.hash("sky.pano?tile=0")[0], whole)
         self.assertEqual(list(self.folder.glob(".*")), [])
+        # Environments in EXR, whose writer closes late.
+        for to in ("cubemap&size=32", "equirectangular&size=64"):
+            self.ok("draw", "noise.ppm.pano?to=" + to, "-o", "environment.exr")
+            self.assertGreater((self.folder / "environment.exr").stat().st_size, 1000)
 
     def test_is_the_hash_that_the_page_says(self):
         """Written out with xxhsum, where it is there."""
@@ -148,6 +153,91 @@ class Pictures(unittest.TestCase):
         self.assertEqual(process.wait(), -signal.SIGINT)
         self.assertEqual((self.folder / "out.tif").read_text(), "as it was")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["noise.ppm", "out.tif", "sky.pano"])
+
+    def frame_view(self, number):
+        return f"sky.pano?size=90x70&yaw={number}"
+
+    def test_draws_frames_by_numbers_in_the_recipe(self):
+        (self.folder / "film").mkdir()
+        for jobs in ("1", "3"):
+            self.assertEqual(self.ok("draw", self.frame_view("{frame}"), "-o", "film/a.{frame}.png", "--frames", "8-12x2", "--jobs", jobs), "")
+            names = ["film/a.0008.png", "film/a.0010.png", "film/a.0012.png"]
+            self.assertEqual(sorted(p.name for p in (self.folder / "film").iterdir()), [name[5:] for name in names])
+            self.assertEqual(self.hash(*names), self.hash(*(self.frame_view(n) for n in (8, 10, 12))))
+            for name in names:
+                (self.folder / name).unlink()
+        # Names without a place for the number get one; other patterns are those of anamorph figure.
+        for pattern, name in (("b.png", "b.0008.png"), ("b%03d.png", "b008.png"), ("b##.png", "b08.png")):
+            self.ok("draw", self.frame_view("{frame}"), "-o", pattern, "--frames", "8")
+            self.assertTrue((self.folder / name).exists(), name)
+
+    def test_draws_frames_of_films(self):
+        (self.folder / "keys.json").write_text('{"keys": {"yaw": [[0, 0], [4, 80]]}}')
+        film = "sky.pano?size=90x70&keys=keys.json"
+        self.ok("draw", film, "-o", "all.{frame}.png")
+        names = [f"all.{n:04}.png" for n in range(5)]
+        self.assertEqual(sorted(p.name for p in self.folder.glob("all.*")), names)
+        expected = [f"sky.pano?size=90x70&keys=keys.json&frame={n}" for n in range(5)]
+        self.assertEqual(self.hash(*names), self.hash(*expected))
+        # By the key frame: also beyond what all of it is.
+        self.ok("draw", film, "-o", "some.{frame}.png", "--frames", "3-7x4")
+        self.assertEqual(self.hash("some.0003.png", "some.0007.png"), [self.hash(expected[3])[0], self.hash(film + "&frame=7")[0]])
+        # Of an operation without that key, pictures by their numbers.
+        (self.folder / "f.json").write_text('{"features": [{"line": [[10, 10, 90, 90], [20, 10, 90, 80]]}]}')
+        self.ok("draw", "m.morph?a=noise.ppm&b=noise.ppm&features=f.json&frames=3", "-o", "m.{frame}.tif", "--frames", "1-2")
+        self.assertEqual(sorted(p.name for p in self.folder.glob("m.*")), ["m.0001.tif", "m.0002.tif"])
+        self.assertEqual(self.hash("m.0001.tif")[0], self.hash("m.morph?a=noise.ppm&b=noise.ppm&features=f.json&t=0.5")[0])
+        self.refused("--frames=1-3: must be from 0 to 2", "draw", "m.morph?a=noise.ppm&b=noise.ppm&features=f.json&frames=3", "-o", "n.tif",
+                     "--frames", "1-3")
+
+    def test_refuses_frames(self):
+        for frames in ("x", "-1", "3-2", "1-", "1-2x0", "1-2x", "1,2"):
+            self.refused("--frames=%s: must be a number such as 7" % frames, "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames=" + frames)
+        self.refused("--frames: must be given as numbers", "draw", self.frame_view("{frame}"), "-o", "a.png")
+        self.refused("--frames: must be given as numbers", "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames", "all")
+        self.refused("frame 9: yaw=9x", "draw", self.frame_view("{frame}x"), "-o", "a.png", "--frames", "9")
+        self.refused("frame 1: cannot write no/a.0001.png", "draw", self.frame_view("{frame}"), "-o", "no/a.png", "--frames", "1-3")
+        self.refused("--part excludes --frames", "draw", "sky.pano", "-o", "a", "--part", "1/2", "--frames", "1")
+        for jobs in ("-1", "257"):
+            self.refused("--jobs=%s: must be from 0 to 256" % jobs, "draw", "sky.pano", "-o", "a.png", "--jobs=" + jobs)
+        self.assertEqual(list(self.folder.glob("a*")), [])
+
+    def test_an_interrupted_film_leaves_whole_frames(self):
+        process = subprocess.Popen([PROGRAM, "draw", "sky.pano?size=700x500&yaw={frame}", "-o", "a.{frame}.tif", "--frames", "1-100000", "--jobs", "3"],
+                                   cwd=self.folder)
+        while not list(self.folder.glob("a.*")):
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(), -signal.SIGINT)
+        frames = sorted(p.name for p in self.folder.glob("a.*"))
+        self.assertEqual(self.hash(*frames), self.hash(*(f"sky.pano?size=700x500&yaw={int(name[2:6])}" for name in frames)))
+        self.assertEqual(list(self.folder.glob(".*")), [])
+
+    def on_terminal(self, *arguments):
+        """The standard error of a program whose standard error is a terminal."""
+        master, slave = pty.openpty()
+        process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stderr=slave, stdout=subprocess.DEVNULL)
+        os.close(slave)
+        text = b""
+        while True:
+            try:
+                text += os.read(master, 4096)
+            except OSError:  # how a terminal ends
+                break
+        os.close(master)
+        self.assertEqual(process.wait(), 0, text)
+        return text.decode()
+
+    def test_says_how_long_it_will_take_on_a_terminal(self):
+        # Of what is drawn within half a second nothing is said: so much is drawn that it takes longer.
+        def told_of(commands):
+            return next(filter(None, (self.on_terminal("draw", *command, "--jobs", "1") for command in commands)))
+
+        told = told_of([f"sky.pano?size={size}x{size}&tol=0&filter=bicubic", "-o", "big.tif"] for size in (1500, 3000, 6000, 12000))
+        self.assertRegex(told, r"\[#+ *\] \d+ of \d+ tiles, \d+:\d\d left")
+        self.assertTrue(told.endswith("\r\033[K"), told[-60:])
+        told = told_of(["sky.pano?size=400x400&tol=0&yaw={frame}", "-o", "f.tif", "--frames", f"1-{count}"] for count in (20, 200, 2000))
+        self.assertRegex(told, r"\[#+ *\] \d+ of 20+ frames, \d+:\d\d left")
 
     def test_memory_stays_flat(self):
         def peak(size):

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <new>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "anamorph/number/portable.h"
+#include "anamorph/parameter/suggestion.h"
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
@@ -37,31 +37,6 @@ std::string joined(const std::vector<std::string>& words) {
     std::string out;
     for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
     return out;
-}
-
-/// How many letters have to be put in, taken out or replaced to make one word of another (Levenshtein).
-std::size_t edits(std::string_view from, std::string_view to) {
-    std::vector<std::size_t> row(to.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= from.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i);
-        for (std::size_t j = 1; j <= to.size(); ++j) {
-            const std::size_t replaced = diagonal + (from[i - 1] != to[j - 1]);
-            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-        }
-    }
-    return row.back();
-}
-
-/// For an error: the word that may have been meant, if one is near.
-std::string meant(const std::string& word, const std::vector<std::string>& words) {
-    constexpr std::size_t kLongest = 64;
-    if (word.size() > kLongest) return {};
-    const std::string* best = nullptr;
-    std::size_t fewest = word.size() / 3 + 1;
-    for (const std::string& other : words)
-        if (const std::size_t count = edits(word, other); count < fewest) fewest = count, best = &other;
-    return best ? ", perhaps " + *best + " is meant" : "";
 }
 
 /// All of `text` as a finite number; locale-independent.
@@ -211,8 +186,14 @@ std::string joined_in_a_line(const std::vector<std::string>& all) {
 [[noreturn]] void throw_unknown(const Assignment& given, const ParameterTable& table) {
     const std::vector<std::string> all = names(table);
     throw Error(printable(given.key), printable(given.value),
-                "there is no such parameter" + meant(lower(given.key), all) + ": must be one of " +
+                "there is no such parameter" + perhaps(lower(given.key), all) + ": must be one of " +
                     joined_in_a_line(all));
+}
+
+[[noreturn]] void throw_refused(const Parameter& parameter, const std::string& text) {
+    const std::string near = perhaps(lower(text), parameter.choices);
+    throw Error(parameter.name, printable(text),
+                (near.empty() ? "" : "there is no such value" + near + ": ") + parameter.rule());
 }
 
 /// "key=value" cut at its first equals sign.
@@ -411,7 +392,7 @@ void ParameterValues::set(std::string_view name, const std::string& text) {
     if (defines(name)) return define({std::string(name), text});
     const Parameter& parameter = row_of(name);
     std::vector<double> numbers = numbers_in(parameter, text);
-    if (!is_allowed(parameter, text, numbers)) throw Error(parameter.name, printable(text), parameter.rule());
+    if (!is_allowed(parameter, text, numbers)) throw_refused(parameter, text);
     m_given[parameter.name] = {text, std::move(numbers)};
 }
 

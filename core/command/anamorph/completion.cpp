@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -16,7 +17,7 @@
 namespace anamorph::command {
 namespace {
 
-constexpr std::string_view kPrograms[] = {"anamorph", "anamorph-figure", "anamorph-machine"};
+constexpr std::string_view kCompleted[] = {"anamorph", "anamorph-figure", "anamorph-machine"};
 
 /// What a program of ours says of itself, or of one of its subcommands; empty where it is not there.
 std::string help_of(const std::string& program, const std::string& subcommand) {
@@ -99,10 +100,20 @@ std::vector<std::string> in_recipe(const std::string& word) {
 std::vector<std::string> completions(const std::vector<std::string>& words) {
     if (words.size() < 2) return {};
     const std::string program = std::filesystem::path(words[0]).filename().string(), &last = words.back();
-    if (std::ranges::find(kPrograms, program) == std::end(kPrograms)) return {};
+    if (std::ranges::find(kCompleted, program) == std::end(kCompleted)) return {};
+    if (program == "anamorph" && words.size() > 2 &&
+        std::ranges::find(kPrograms, words[1]) != std::end(kPrograms)) {
+        std::vector<std::string> of_program(words.begin() + 1, words.end());
+        of_program[0] = "anamorph-" + words[1];
+        return completions(of_program);
+    }
     Offered offered = offered_by(help_of(program, ""));
-    if (program == "anamorph")
-        offered.subcommands.insert(offered.subcommands.end(), std::begin(kOfPictures), std::end(kOfPictures));
+    if (program == "anamorph") {
+        for (const auto& more :
+             {std::span<const std::string_view>(kOfPictures), std::span<const std::string_view>(kPrograms)})
+            offered.subcommands.insert(offered.subcommands.end(), more.begin(), more.end());
+        offered.subcommands.emplace_back(kBench);
+    }
     std::string subcommand;
     for (std::size_t i = 1; i + 1 < words.size() && subcommand.empty(); ++i)
         if (std::ranges::find(offered.subcommands, words[i]) != offered.subcommands.end())
@@ -112,6 +123,8 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
         all = subcommand.empty() ? offered.options : offered_by(help_of(program, subcommand)).options;
     } else if (subcommand.empty()) {
         all.insert(all.end(), offered.subcommands.begin(), offered.subcommands.end());
+    } else if (program == "anamorph" && subcommand == "new") {
+        for (const Operation* operation : operations()) all.push_back(operation->name);
     } else if (program == "anamorph" && subcommand == "help") {
         for (const Operation* operation : operations()) all.push_back(operation->name);
         all.insert(all.end(), std::begin(kOfPictures), std::end(kOfPictures));

@@ -5,25 +5,29 @@
 #include <sstream>
 
 namespace anamorph::command {
-namespace {
 
-constexpr std::size_t kColumns = 80;
+std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
+    std::istringstream words(text);
+    std::vector<std::string> lines{""};
+    std::string word;
+    while (words >> word) {
+        std::string& line = lines.back();
+        if (!line.empty() && line.size() + 1 + word.size() > columns)
+            lines.push_back(word);
+        else
+            line += (line.empty() ? "" : " ") + word;
+    }
+    return lines;
+}
+
+namespace {
 
 /// The words of a text in lines of at most kColumns, each after `indent` blanks.
 std::string lines_of(const std::string& text, std::size_t indent) {
-    std::istringstream words(text);
-    std::string all, line(indent, ' '), word;
-    while (words >> word) {
-        const bool first = line.size() == indent;
-        if (!first && line.size() + 1 + word.size() > kColumns) {
-            all += line + "\n";
-            line.assign(indent, ' ');
-            line += word;
-        } else {
-            line += (first ? "" : " ") + word;
-        }
-    }
-    return all + line + "\n";
+    std::string all;
+    for (const std::string& line : wrapped(text, kColumns - indent))
+        all += std::string(indent, ' ') + line + "\n";
+    return all;
 }
 
 std::string row_of(const Parameter& p) {

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recipe_template.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "anamorph/error.h"
+#include "output_file.h"
+#include "reference.h"
+
+namespace anamorph::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A value as a recipe file has it.
+std::string value_text(const std::string& value) {
+    const bool like_comment = value.find(" #") != std::string::npos || value.starts_with('#');
+    return like_comment ? '"' + value + '"' : value;
+}
+
+/// The keys that sources are the values of: where none are drawn, that of the file that is.
+std::vector<std::string> source_keys(const Operation& operation) {
+    if (operation.sources.empty() && !operation.main_file.empty()) return {operation.main_file};
+    return operation.sources;
+}
+
+/// Keys and values that are set in the template.
+std::map<std::string, std::string> set_values(const Operation& operation,
+                                              const std::vector<std::string>& sources, bool example) {
+    std::map<std::string, std::string> set;
+    const std::vector<std::string> keys = source_keys(operation);
+    if (sources.size() > keys.size())
+        throw Error("SOURCE", printable(sources[keys.size()]),
+                    operation.name + " has " + std::to_string(keys.size()) +
+                        (keys.size() == 1 ? " source" : " sources") + " at most");
+    for (std::size_t i = 0; i < sources.size(); ++i) set[keys[i]] = sources[i];
+    if (example)
+        for (const Assignment& a : parse_recipe_name("?" + operation.example.arguments).assignments)
+            set.insert({a.key, a.value});
+    return set;
+}
+
+std::string comment(const std::string& text) {
+    std::string commented;
+    constexpr std::size_t kMark = 2;  // "# "
+    for (const std::string& line : wrapped(text, kColumns - kMark)) commented += "# " + line + "\n";
+    return commented;
+}
+
+/// A file that is not there yet. Throws Error where it is.
+void write_new(const fs::path& name, const std::string& text) {
+    if (fs::exists(fs::symlink_status(name))) throw Error(printable(name.string()) + " is there already");
+    OutputFile file(name.string());
+    file.write(text);
+    file.close();
+}
+
+}  // namespace
+
+std::string recipe_template(const Operation& operation, const std::vector<std::string>& sources,
+                            bool example) {
+    const std::map<std::string, std::string> set = set_values(operation, sources, example);
+    std::string text = comment(operation.title + ".") +
+                       comment("Each key of a ." + operation.name +
+                               " is below, with what it may be and its default. Lines that begin with # say "
+                               "nothing: a key counts once its # is taken away.");
+    for (const Parameter& p : *operation.parameters) {
+        text += "\n" + comment(p.documentation);
+        text += comment(p.accepted() + (p.unit.empty() ? "" : " (" + p.unit + ")"));
+        const auto given = set.find(p.name);
+        text += given != set.end() ? p.name + "=" + value_text(given->second)
+                                   : "#" + p.name + "=" + value_text(p.default_value);
+        text += "\n";
+    }
+    // Names that the example defines.
+    for (const auto& [key, value] : set)
+        if (!ParameterValues(*operation.parameters).knows(key))
+            text += "\n" + key + "=" + value_text(value) + "\n";
+    return text;
+}
+
+void write_recipe_template(const Operation& operation, std::vector<std::string> sources,
+                           const std::string& output) {
+    const fs::path folder = fs::path(output).parent_path();
+    if (find_operation(fs::path(output).extension().string().erase(0, 1)) != &operation)
+        throw Error("--output", printable(output), "must end in ." + operation.name);
+    // Names in a recipe file are relative to its folder.
+    for (std::string& source : sources)
+        if (!folder.empty() && fs::path(source).is_relative())
+            source = fs::absolute(source).lexically_normal().lexically_proximate(
+                fs::absolute(folder).lexically_normal());
+    const std::map<std::string, std::string> set = set_values(operation, sources, true);
+    const std::string text = recipe_template(operation, sources, true);
+    for (const auto& [name, content] : operation.example.files)
+        if (std::ranges::any_of(set, [&name = name](const auto& value) { return value.second == name; }))
+            write_new(folder / name, content);
+    write_new(output, text);
+}
+
+}  // namespace anamorph::command
