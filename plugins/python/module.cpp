@@ -24,6 +24,7 @@
 #include "anamorph/parallel.h"
 #include "anamorph/version.h"
 #include "arrays.h"
+#include "figures.h"
 
 namespace py = pybind11;
 
@@ -333,4 +334,5 @@ PYBIND11_MODULE(_core, m) {
         .def("draw", &ModulePicture::draw)
         .def("source_points", &ModulePicture::source_points)
         .def("jacobians", &ModulePicture::jacobians);
+    bind_figures(m);
 }

@@ -596,8 +596,9 @@ class Words(unittest.TestCase):
             self.assertEqual(names, list(real))
         classes = {node.name: {n.name for n in node.body if isinstance(n, ast.FunctionDef)} for node in tree.body
                    if isinstance(node, ast.ClassDef)}
-        public = {name for name in vars(anamorph.Picture) if not name.startswith("_")}
-        self.assertEqual(public, {name for name in classes["Picture"] if not name.startswith("_")})
+        for of in (anamorph.Picture, anamorph.Map):
+            public = {name for name in vars(of) if not name.startswith("_")}
+            self.assertEqual(public, {name for name in classes[of.__name__] if not name.startswith("_")})
 
 
 if __name__ == "__main__":

@@ -22,7 +22,12 @@ class Page(unittest.TestCase):
         self.assertEqual(names["bent"].shape, (480, 640, 4))
         self.assertLessEqual(names["picture"].reached()["anamorph:max_error"], 0.001)
         np.testing.assert_array_equal(names["tile"], names["picture"].draw()[128:256, 128:256])
-        self.assertTrue(0 < names["u"] < 1024 and 0 < names["v"] < 512)
+        self.assertEqual(names["paths"].shape, (9, 2, 3))
+        self.assertTrue(names["lines"])
+        np.testing.assert_allclose(names["half"][:, 2].max(), 0.1, atol=0.005)
+        inner = np.s_[100:-100, 100:-100]
+        np.testing.assert_allclose(names["kept"].points(*names["both"].centers())[0][inner], names["both"].points(*names["both"].centers())[0][inner], atol=0.01)
+        self.assertEqual((round(float(names["x"]), 3), names["straight"].shape), (320, (480, 640, 3)))
 
 
 if __name__ == "__main__":

@@ -17,19 +17,28 @@ A Picture is opened once and drawn as often as one likes, any part of it:
 What cannot be taken is an Error, a ValueError whose `parameter` is the key that is to blame.
 """
 import inspect as _inspect
-import json as _json
 import keyword as _keyword
 import numbers as _numbers
 import os as _os
 import sys as _sys
+from pkgutil import extend_path as _extend_path
 
 import numpy as _numpy
 
 from . import _core
+from ._checks import encoded as _encoded
+from ._checks import error as _error
+from ._checks import integer as _integer
+from ._checks import integers as _integers
+from ._checks import json_of as _json_of
 from ._core import Error
+
+# The VTK modules are of a folder of the same name, which may be elsewhere.
+__path__ = _extend_path(__path__, __name__)
 
 __version__ = _core.version
 _OPERATIONS = {operation["name"]: operation for operation in _core.operations()}
+_TABLES = {name: {key["name"]: key for key in operation["keys"]} for name, operation in _OPERATIONS.items()}
 operations = tuple(_OPERATIONS)
 
 
@@ -81,7 +90,7 @@ class Picture:
             raise _error("operation", f"operation={operation}: must be one of {', '.join(operations)}")
         keys = {_key_of(name): value for name, value in keys.items() if value is not None}
         _check_sources_are_no_keys(_OPERATIONS[operation], keys)
-        table = {key["name"]: key for key in _OPERATIONS[operation]["keys"]}
+        table = _TABLES[operation]
         texts, images = {}, {}
         values = [(_encoded(name), _encoded(_text_of(table.get(name), name, value, texts, images), name))
                   for name, value in keys.items()]
@@ -206,57 +215,11 @@ def _key_of(name):
     return name[:-1] if name.endswith("_") and _keyword.iskeyword(name[:-1]) else name
 
 
-def _error(parameter, message):
-    error = Error(message)
-    error.parameter = parameter
-    return error
-
-
 def _check_sources_are_no_keys(operation, keys):
     for name in operation["sources"]:
         names_images = name == operation["main_file"] and isinstance(keys.get(name), (str, _os.PathLike))
         if name in keys and not names_images:
             raise _error(name, f"{name}: sources are no keys: must be given first, in the order {', '.join(operation['sources'])}")
-
-
-def _encoded(text, name="a key"):
-    """Bytes, since names of files may be any."""
-    if "\0" in text:
-        raise _error(name, f"{name}: must have no NUL character")
-    return text.encode("utf-8", "surrogateescape")
-
-
-def _plain_json(value):
-    if isinstance(value, (_numpy.ndarray, _numpy.generic)):
-        return value.tolist()
-    raise TypeError(f"a {type(value).__name__} has no place in JSON")
-
-
-def _json_of(key, value):
-    try:
-        return _json.dumps(value, allow_nan=False, default=_plain_json)
-    except (TypeError, ValueError) as error:
-        raise _error(key, f"{key}: cannot be written as JSON: {error}") from None
-
-
-def _integer(name, value):
-    try:
-        number = value.__index__()
-    except (AttributeError, TypeError):
-        raise TypeError(f"{name}={value!r}: must be an integer") from None
-    if not -2**31 <= number < 2**31:
-        raise ValueError(f"{name}={number}: must be an integer of 32 bits")
-    return number
-
-
-def _integers(name, values, count):
-    try:
-        values = tuple(values)
-    except TypeError:
-        values = ()
-    if len(values) != count:
-        raise ValueError(f"{name}: must be {count} integers")
-    return tuple(_integer(name, value) for value in values)
 
 
 def _number_text(key, value):
@@ -438,4 +401,15 @@ for _operation in _OPERATIONS.values():
     globals()[_operation["name"]] = _function(_operation)
 del _operation
 
-__all__ = ["Error", "Image", "Picture", "apply", "operations", *operations]
+from . import figures, surfaces  # noqa: E402
+from .maps import Map  # noqa: E402
+
+__all__ = ["Error", "Image", "Map", "Picture", "apply", "figures", "operations", "surfaces", *operations]
+
+
+def __getattr__(name):
+    if not name.startswith("vtkAnamorph"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import vtk
+
+    return getattr(vtk, name)
