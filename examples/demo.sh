@@ -1,21 +1,21 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Shows what Anamorph does, on Debian 12 from a fresh machine on: builds it, and lets the stock oiiotool draw views of an
-# HDR panorama, warp a picture, film a morph of two and draw a figure. Everything it makes is in build/demo/out.
+# Shows what Anamorph does, on Debian 12 from a fresh machine on: builds the plugin and the programs, draws each kind of picture once, and ends with
+# a page of them. Everything it makes is in build/demo/out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage="usage: examples/demo.sh [--quick | --long]
 
-Builds Anamorph and draws pictures, films, and tables and plots of speed against error into build/demo/out. The packages of
-Debian that are missing are installed (as root or with sudo), and it says which.
+Builds Anamorph, and draws pictures and films and a page of them, index.html, into build/demo/out. The packages of Debian that are missing are
+installed (as root or with sudo), and it says which.
 
-  --long   long tables: all cases, pictures 1024 pixels wide, 15 rounds; a quarter of an hour more
-  --quick  tables of small pictures in one round, for tests
+  --long   also builds the Python module and measures speed against error beside other programs; some minutes more
+  --quick  short films of small frames, for tests
   --help   prints this"
-tables=short
+kind=usual
 case "${1:-}" in
     "") ;;
-    --quick | --long) tables="${1#--}" ;;
+    --quick | --long) kind="${1#--}" ;;
     --help | -h) echo "$usage"; exit 0 ;;
     *) echo "demo.sh: $1: must be --quick, --long or --help" >&2; exit 1 ;;
 esac
@@ -23,8 +23,7 @@ if [ $# -gt 1 ]; then
     echo "demo.sh: $2: one option at most" >&2
     exit 1
 fi
-tests/install_packages.sh build hosts bench plots vtk
-tests/unpack_vtk.sh build/vtk-9.1 # a rival in the table of speed against error
+tests/install_packages.sh build hosts
 
 demo="$PWD/build/demo"
 out="$demo/out"
@@ -46,14 +45,17 @@ show_progress() {
     [ ! -t 1 ] || [ "$shown" -lt 0 ] || echo
 }
 
+targets=(anamorph.imageio anamorph_program anamorph_pictures anamorph_figure)
+[ "$kind" != long ] || targets+=(anamorph_python)
 build() {
-    cmake --preset release -DVTK_ROOT="$PWD/build/vtk-9.1/usr" &&
-        NINJA_STATUS="[%f/%t] " cmake --build --preset release --target anamorph.imageio anamorph_figure speed_vs_error
+    # Where there are tests already they stay.
+    [ -e build/release/CMakeCache.txt ] || cmake --preset release -DANAMORPH_TESTS=OFF || return
+    NINJA_STATUS="[%f/%t] " cmake --build --preset release --target "${targets[@]}"
 }
 
-echo "building into build/release (the first time this takes about 6 minutes on 2 cores)"
+echo "building into build/release (the first time this takes about 5 minutes on 2 cores)"
 build 2>&1 | tee "$demo/build.txt" | show_progress || { cat "$demo/build.txt" >&2; exit 1; }
-export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio"
+export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio" PATH="$PWD/build/release/core/command:$PATH"
 
 # A real HDR panorama: one of the studio lights that come with Blender (CC0). Only the package's file is
 # fetched and unpacked; nothing of it is installed.
@@ -73,43 +75,56 @@ if ! fetch_panorama; then
 fi
 
 cd "$out"
+lines="$demo/lines.txt" # of the page: names, tabs, commands
+: >"$lines"
+shown=0 all=21
+# show NAME COMMAND...: runs a command that makes a picture, and says how far the demo is.
+show() {
+    local name="$1" text="" word
+    shift
+    for word in "$@"; do
+        [[ "$word" =~ ^[A-Za-z0-9_./:=+-]+$ ]] || word="${word@Q}"
+        text+="$word "
+    done
+    shown=$((shown + 1))
+    printf '(%d of %d, %d s) %s\n' "$shown" "$all" "$SECONDS" "$name"
+    "$@"
+    printf '%s\t%s\n' "$name" "$text" >>"$lines"
+}
 # Highlights compressed into what a screen shows, then as screens want it.
 tone_map=(--ch R,G,B --rangecompress --colorconvert linear sRGB -d uint8)
 
-# draw NAME ARGUMENTS: a picture out of the panorama, drawn by the stock oiiotool.
-draw() {
-    echo "$1.png: panorama.exr.pano?$2"
-    oiiotool "panorama.exr.pano?$2" "${tone_map[@]}" -o "$1.png"
+# Out of the panorama, by the stock oiiotool.
+view() {
+    show "$1.png" oiiotool "panorama.exr.$2" "${tone_map[@]}" -o "$1.png"
 }
-oiiotool panorama.exr "${tone_map[@]}" -o panorama.png
-draw rectilinear "to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360"
-draw rolled "to=rectilinear&fov=80&yaw=-70&pitch=-15&roll=20&size=480x360"
-draw fisheye "to=fisheye&fov=180&pitch=-20&yaw=140&size=480x480"
-draw little_planet "to=stereographic&fov=240&pitch=-90&size=480x480"
-draw cylindrical "to=cylindrical&fov=200&yaw=90&size=640x320"
-draw mercator "to=mercator&fov=360&size=480x400"
-draw cube_faces "to=cubecross&size=640x480"
+view rectilinear "pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360"
+view fisheye "pano?to=fisheye&fov=180&pitch=-20&yaw=140&size=480x480"
+view little_planet "pano?to=stereographic&fov=240&pitch=-90&size=480x480"
+view mercator "pano?to=mercator&fov=360&size=480x400"
+view cube_faces "pano?to=cubecross&size=640x480"
+# From another place than the panorama was taken at, as if all were 4 radii away; a bump unit of 2003, with its number formats.
+view from_elsewhere "mosaic?from=equirectangular&to=rectilinear&fov=100&x=0.4&z=0.3&depth=4&yaw=160&size=480x360"
+view hardware_2003 "pano?to=rectilinear&fov=100&yaw=160&size=480x360&scheme=hardware&machine=embm-2003"
 
 # The same from a recipe on disk, which every program that reads files by OpenImageIO can open; as an OpenEXR cube map.
 printf '%s\n' '# six faces as a vertical strip' 'src=panorama.exr' 'to=cubemap' 'size=256' >cube.pano
-echo "cube.exr: cube.pano"
-oiiotool cube.pano -o cube.exr
+show cube.exr anamorph draw cube.pano -o cube.exr
 
 # How far every source point used is from the exact one, in source pixels: brightest where it is furthest.
-echo "error.png: output=error"
-oiiotool "panorama.exr.pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360&output=error" \
+show error.png oiiotool "panorama.exr.pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360&output=error" \
     --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o error.png
 
-# A picture through a control mesh, as it is and half as strong, and how far every source point is off.
+# A photo bent by a lens, and made straight again.
 /usr/bin/python3 ../../../examples/make_faces.py round.png long.png faces.csv
-/usr/bin/python3 ../../../examples/make_cube.py label_ .png
-cp -r ../../../examples/bulge.json ../../../examples/maps .
-echo "warp.jpg: round.png.warp?mesh=bulge.json"
-oiiotool "round.png.warp?mesh=bulge.json" -o warp.jpg
-echo "half_warp.jpg: round.png.warp?mesh=bulge.json&amount=0.5"
-oiiotool "round.png.warp?mesh=bulge.json&amount=0.5" -o half_warp.jpg
-echo "warp_error.png: output=error"
-oiiotool "round.png.warp?mesh=bulge.json&output=error" --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o warp_error.png
+/usr/bin/python3 ../../../examples/make_cube.py label_ .png # for the pages of docs/
+cp -r ../../../examples/{bulge.json,maps,relief.csv,smile.csv,frown.csv,expressions.json,figures/walker.nudes} .
+show bent.png anamorph draw "rectilinear.png.lens?lens=brown:k1=-0.15&fov=100&mode=distort" -o bent.png
+show straight.png anamorph draw "bent.png.lens?lens=brown:k1=-0.15&fov=100" -o straight.png
+
+# Through a control mesh, and along a formula.
+show warp.jpg anamorph draw "round.png.warp?mesh=bulge.json" -o warp.jpg
+show swirl.jpg anamorph draw "round.png.map?let=w=3*exp(-4*r^2)&u=width/2+height/2*r*cos(a+w)&v=height/2-height/2*r*sin(a+w)" -o swirl.jpg
 
 # Two real pictures: a cat (CC0) and a raccoon (public domain) that come with scikit-image and SciPy.
 fetch_animals() {
@@ -132,69 +147,37 @@ if ! fetch_animals; then
     a=round.png morph="round.png.morph?b=long.png&features=faces.csv"
 fi
 
-# film NAME LAST RECIPE: frames 0 to LAST, and a film of them.
+# Films: frames, each as numbered pictures, and, where ffmpeg is installed, a film of them.
+frames=48 last=24
+[ "$kind" != quick ] || frames=4 last=2
+# film NAME LAST RECIPE: frames 0 to LAST.
 film() {
-    echo "$1.0000.jpg to $1.00$2.jpg: $3"
-    oiiotool --frames "0-$2" "$3" -o "$1.%04d.jpg"
+    show "$1.0000.jpg" anamorph draw "$3" --frames "0-$2" -o "$1.{frame}.jpg"
     if command -v ffmpeg >/dev/null; then
-        echo "$1.mp4"
         ffmpeg -loglevel error -y -framerate 24 -i "$1.%04d.jpg" -pix_fmt yuv420p "$1.mp4"
-    else
-        echo "(no $1.mp4: ffmpeg is not installed)"
     fi
 }
+# From one picture to another along corresponding lines.
+show lines.jpg anamorph draw "$morph&output=lines" -o lines.jpg
+film film "$frames" "$morph&frames=$((frames + 1))"
+show half.jpg anamorph draw "$morph&t=0.5" -o half.jpg
 
-# From one picture to another along corresponding lines: a film, frame by frame.
-echo "lines.jpg: $morph&output=lines"
-oiiotool "$morph&output=lines" -o lines.jpg
-film film 48 "$morph&t={FRAME_NUMBER/48}"
-
-# The same picture as a page that is turned; a face that a list of deformations raises from its picture, turned before the
-# camera (Oka 1987, section 4.1).
-film page 24 "$a.drape?surface=page_turn&direction=-25&radius=0.12&shading=phong&light=0.3,0.4,1&fov=35&camera=0.3,-0.7,2&background=0.1,0.1,0.1&turn={FRAME_NUMBER/24}"
-cp ../../../examples/{relief.csv,smile.csv,frown.csv,expressions.json} .
+# A page that is turned; a face that a list of deformations raises from its picture (Oka 1987, section 4.1), and expressions of it, mixed by weights
+# that key frames give (section 4.2).
+printf '{"keys": {"turn": [[0, 0], [%d, 1]]}}\n' "$last" >turn.json
+film page "$last" "$a.drape?surface=page_turn&direction=-25&radius=0.12&shading=phong&light=0.3,0.4,1&fov=35&camera=0.3,-0.7,2&background=0.1,0.1,0.1&keys=turn.json"
 relief="round.png.drape?deform=relief.csv&shading=phong&light=-0.6,0.5,1&ambient=0.35&fov=40&camera=0,0.3,1.9"
-film relief 24 "$relief&rotate=0,{-55+110*FRAME_NUMBER/24},0"
-# Expressions of that face, mixed by weights that key frames give (section 4.2).
-film expressions 40 "$relief&blend=smile.csv,frown.csv&weights=0,0&keys=expressions.json&frame={FRAME_NUMBER}"
-echo "relief.jpg: $relief&rotate=0,-34,0"
-oiiotool "$relief&rotate=0,-34,0" -o relief.jpg
+show relief.jpg anamorph draw "$relief&rotate=0,-34,0" -o relief.jpg
+film expressions "$last" "$relief&blend=smile.csv,frown.csv&weights=0,0&keys=expressions.json"
 
-# Ellipsoids that walk by a script of NUDES: outlines with hidden lines removed.
-cp ../../../examples/figures/walker.nudes .
-echo "walker.png, walker.pdf: walker.nudes"
-../../release/core/command/anamorph-figure png walker.nudes --frame 24 -o walker.png
-../../release/core/command/anamorph-figure pdf walker.nudes --frame all -o walker.pdf
+# Ellipsoids that walk by a script of NUDES: outlines with hidden lines removed, and as wood, shaded.
+show walker.png anamorph figure png walker.nudes --frame 24 --fit -o walker.png
+show wooden.png anamorph draw "walker.nudes?frame=24&fit=1&solid=wood&lighting=blinn&size=480x480" -o wooden.png
 
-# Speed against error of all operations: one table and one plot each. Of morphs, the long table has four weights a and three b
-# of each family of lines, and the plot has the usual ones.
-morph_cases=smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper
-pano_cases=equirect,equirect_rotated,fisheye,planet,mercator,full_sphere
-case "$tables" in
-    long) size=1024 morph_size=600 rounds=15 ;;
-    short) size=512 morph_size=300 rounds=3 ;;
-    quick) size=128 morph_size=128 rounds=1 ;;
-esac
-
-# table OP SIZE MEASURED PLOTTED: both are cases, or nothing for all.
-table() {
-    local name="speed_vs_error_$1"
-    echo "$name.csv, .png, .svg"
-    ../../release/tests/bench/speed_vs_error --op "$1" --size "$2" --rounds "$rounds" --case "$3" --csv "$name.csv" >"$name.txt"
-    /usr/bin/python3 ../../../examples/plot_speed_vs_error.py --cases "$4" "$name.csv" "$name.png" "$name.svg"
-}
-echo "tables and plots of speed against error, pictures $size pixels wide, rounds: $rounds"
-if [ "$tables" = short ]; then
-    table pano "$size" "$pano_cases" ""
-    table morph "$morph_size" "$morph_cases" ""
-else
-    table pano "$size" "" ""
-    table morph "$morph_size" "" "$morph_cases"
+if [ "$kind" = long ]; then
+    echo "measuring speed against error, beside what Python has"
+    anamorph bench -o bench
 fi
-table warp "$size" "" ""
-table drape "$size" "" ""
-
-/usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
-    little_planet.png cylindrical.png mercator.png cube_faces.png error.png round.png warp.jpg \
-    warp_error.png "$a" lines.jpg film.0024.jpg page.0012.jpg relief.jpg expressions.0010.jpg walker.png
-echo "done: $out"
+echo "measuring, for the page's plot"
+/usr/bin/python3 ../../../examples/demo_page.py "$(command -v anamorph)" "$lines" .
+echo "done, $SECONDS s: $out/index.html"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python of docs/vtk.md: each block, with what it takes for granted before it and a look at what it made behind.
+"""The Python of docs/vtk.md, and what docs/start.md has of it: each block, with what it takes for granted before it and a look at what it made behind.
 Runs where the page's own exports have said where the packages are, on a screen in memory, in the tree."""
 import shutil
 
@@ -45,6 +45,10 @@ def drawn(actor):
     grab.SetInput(window)
     grab.Update()
     return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).astype(int)
+
+
+def check_start():
+    assert run("start", {})["vtkAnamorphReliefSource"]().IsA("vtkAnamorphReliefSource")
 
 
 def check_deform():
@@ -95,6 +99,16 @@ def check_writer():
         assert b'"targetNames":["smile","shape 2"]' in file.read()
 
 
+def check_warp():
+    moved = vtkPlaneSource()
+    moved.SetOrigin(0, 0, 0)
+    moved.SetPoint1(63, 0, 0)
+    moved.SetPoint2(0, 31, 0)
+    warp = run("warp", {"image": red_picture(), "moved": moved})["warp"]
+    assert (vtk_to_numpy(warp.GetOutput().GetPointData().GetScalars()) == [250, 20, 20]).all()
+    assert warp.GetMaxError() <= 0.05
+
+
 def check_project():
     scene = vtkSphereSource()
     scene.SetRadius(5)
@@ -120,9 +134,13 @@ def check_shader():
     actor.GetProperty().LightingOff()
     texture.SetInputData(red_picture())
     texture.InterpolateOn()
-    run("shader", {"texture": texture, "actor": actor})
+    names = run("shader", {"texture": texture, "actor": actor})
     colors = drawn(actor)
     assert (colors[:, 0] - colors[:, 1] > 100).sum() > 500, "nothing is red"
+    run("mosaics", names)
+    assert names["projector"].GetCircles() == 32
+    colors = drawn(actor)
+    assert (colors[:, 0] - colors[:, 1] > 100).sum() > 100, "nothing is red by circles"
 
 
 def check_mapper():
@@ -139,8 +157,8 @@ def check_mapper():
     assert image.GetOutput().GetNumberOfPoints() > 0
 
 
-checks = {"deform": check_deform, "image": check_image, "bent": check_bent, "writer": check_writer, "project": check_project,
-          "shader": check_shader, "view": check_view, "mapper": check_mapper}
+checks = {"start": check_start, "deform": check_deform, "image": check_image, "bent": check_bent, "writer": check_writer, "warp": check_warp,
+          "project": check_project, "shader": check_shader, "view": check_view, "mapper": check_mapper}
 for check in checks.values():
     check()
 assert set(TEXT) == {*checks, "depths", "anchor", "labels", "textures"}, TEXT.keys()

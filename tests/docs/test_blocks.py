@@ -113,7 +113,7 @@ class Shell(unittest.TestCase):
             if words[0] == "cmake" and "--target" in words:
                 target = words[words.index("--target") + 1]
                 found = output("grep", "-rEl", "--include=CMakeLists.txt", rf"add_(custom_target|library|executable)\({target}\b",
-                               str(SOURCE / "core"), str(SOURCE / "plugins"), str(SOURCE / "tests"))
+                               str(SOURCE / "core"), str(SOURCE / "docs"), str(SOURCE / "plugins"), str(SOURCE / "tests"))
                 self.assertTrue(found, f"{where}: {target}")
 
     def test_files_exist(self):

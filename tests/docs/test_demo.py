@@ -4,7 +4,12 @@ import os
 import pty
 import re
 import subprocess
+import sys
+import tempfile
 import unittest
+
+sys.path.insert(0, os.path.join(os.environ["ANAMORPH_SOURCE_DIR"], "examples"))
+import demo_page  # noqa: E402
 
 DEMO = os.path.join(os.environ["ANAMORPH_SOURCE_DIR"], "examples/demo.sh")
 with open(DEMO, encoding="utf-8") as file:
@@ -69,6 +74,30 @@ class Progress(unittest.TestCase):
         done = subprocess.run(["bash", "-c", PROGRESS + "show_progress"], input="ninja: no work to do.\n", capture_output=True,
                               text=True, check=True, timeout=60)
         self.assertEqual(done.stdout, "")
+
+
+class Page(unittest.TestCase):
+    def test_shows_what_was_drawn_with_its_line(self):
+        text = demo_page.page([["a.png", "anamorph draw 'x?y=1&z=2' -o a.png"], ["b.exr", "c"], ["d.mp4", "e"]], "<svg>plotted</svg>")
+        self.assertIn('<img src="a.png"', text)
+        self.assertIn("anamorph draw &#x27;x?y=1&amp;z=2&#x27; -o a.png", text)
+        self.assertIn('<a href="b.exr"', text)
+        self.assertIn('<video src="d.mp4"', text)
+        self.assertIn("<svg>plotted</svg>", text)
+
+    def test_pictures_that_are_not_there_are_an_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "lines"), "w", encoding="utf-8") as file:
+                file.write("gone.png\tanamorph draw\n")
+            done = subprocess.run(["/usr/bin/python3", demo_page.__file__, "anamorph", file.name, folder], capture_output=True, text=True, timeout=60)
+            self.assertEqual((done.returncode, done.stderr), (1, "gone.png: not there\n"))
+            self.assertEqual(os.listdir(folder), ["lines"])
+
+    def test_says_how_many_pictures_there_are(self):
+        with open(DEMO, encoding="utf-8") as file:
+            text = file.read()
+        made = re.findall(r"^(?:show|view|film) ", text, re.M)
+        self.assertEqual(int(re.search(r"all=(\d+)", text)[1]), len(made))
 
 
 if __name__ == "__main__":
