@@ -126,6 +126,14 @@ TEST(Occlusion, WhatRaysMeetFirstIsAmongTheSeen) {
         }
 }
 
+TEST(Occlusion, LargeBodiesNextToTheEyeReachNearerThanTheirMiddlesTell) {
+    for (unsigned seed = 100; seed < 160; ++seed) {
+        const Crowd crowd = crowd_of(120, 0.12, 4, seed);
+        share_left_out(crowd, view_from({1, 1, 1.6}, 90, 11, 100, 0.05, 6));
+        share_left_out(crowd, view_from({1.2, 0.4, 1.4}, 9, 70, 70, 0.05, 6));
+    }
+}
+
 TEST(Occlusion, OfACrowdMostAreHidden) {
     EXPECT_GT(share_left_out(crowd_of(1500, 0.1, 1.5, 7), view_from({2, 3, 9}, 36, 36, 17)), 0.7);
     // What hides has to cover a pixel, not its middle alone, where pixels take several samples.
