@@ -2,6 +2,7 @@
 #include "anamorph/image_source.h"
 
 #include "anamorph/metadata.h"
+#include "anamorph/open_image.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/strutil.h>
@@ -153,7 +154,7 @@ std::unique_ptr<OIIO::ImageInput> open_as_cache_does(ImageCache& cache, const st
     cache.getattribute("unassociatedalpha", unassociated);
     ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", unassociated);
-    return OIIO::ImageInput::open(name, &config);
+    return open_image(name, &config);
 }
 
 /// The names of a file's subimages.
@@ -178,6 +179,7 @@ ImageSpec spec_in_cache(ImageCache& cache, OIIO::ustring name, int subimage, int
     const TypeDesc corners(TypeDesc::INT, 4);
     ImageSpec spec;
     int data[4], display[4];
+    const OpeningLock lock(name.string());
     if (!cache.get_imagespec(name, spec, subimage, 0, true) ||
         !cache.get_image_info(name, subimage, level, data_window, corners, data) ||
         !cache.get_image_info(name, subimage, level, display_window, corners, display))

@@ -12,6 +12,7 @@
 
 #include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
+#include "anamorph/open_image.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
@@ -29,7 +30,7 @@ class OiioImage final : public SideImage {
         // The numbers that are stored, whatever alpha is.
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
-        m_input = OIIO::ImageInput::open(name, &config);
+        m_input = open_image(name, &config);
         if (!m_input) {
             const std::string why = reason_of(OIIO::geterror(), name, name);
             throw Error(m_what + ": " + (why.empty() ? "cannot be read" : why));

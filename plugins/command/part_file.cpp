@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "anamorph/error.h"
+#include "anamorph/open_image.h"
 #include "anamorph/parameter/parameter.h"
 #include "output_file.h"
 
@@ -283,7 +284,7 @@ std::string why_not(const OIIO::ImageOutput& out, const std::string& file) {
 
 /// Is the last row in a file? OpenImageIO's writer of PNG does not see that it is cut off.
 bool has_last_row(const std::string& path, const ImageSpec& spec) {
-    const std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::open(path);
+    const std::unique_ptr<OIIO::ImageInput> file = open_image(path);
     if (!file) return !OIIO::ImageInput::create(path);  // not all that is written can be read
     std::vector<std::byte> row(file->spec().scanline_bytes(true));
     return file->spec().height == spec.height &&

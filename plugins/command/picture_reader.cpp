@@ -6,6 +6,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/file_names.h"
+#include "anamorph/open_image.h"
 #include "anamorph/parameter/parameter.h"
 #include "recipe.h"
 #include "recipe_content.h"
@@ -40,7 +41,7 @@ class FilePicture final : public PictureReader {
   public:
     explicit FilePicture(const std::string& name) : m_name(name) {
         check_file_name("FILE", name);
-        m_file = OIIO::ImageInput::open(name);
+        m_file = open_image(name);
         if (!m_file) throw Error(OIIO::geterror());
         while (m_file->seek_subimage(static_cast<int>(m_specs.size()), 0)) {
             m_specs.push_back(m_file->spec());
