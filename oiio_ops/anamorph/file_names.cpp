@@ -67,4 +67,27 @@ std::string file_state(const std::string& name) {
            " ";
 }
 
+bool has_extension(std::string_view name, std::string_view extension) {
+    const std::string_view base = name.substr(0, name.find('?'));
+    if (base.size() <= extension.size()) return false;
+    const std::string_view end = base.substr(base.size() - extension.size());
+    return std::equal(end.begin(), end.end(), extension.begin(),
+                      [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+}
+
+bool ends_as_main_file(const Operation& operation, std::string_view name) {
+    return std::any_of(operation.endings.begin(), operation.endings.end(), [&](const std::string& ending) {
+        std::string dotted = ".";
+        dotted += ending;
+        return has_extension(name, dotted);
+    });
+}
+
+const Operation* operation_of(std::string_view name) {
+    for (const Operation* operation : operations())
+        if (has_extension(name, "." + operation->name) || ends_as_main_file(*operation, name))
+            return operation;
+    return nullptr;
+}
+
 }  // namespace anamorph

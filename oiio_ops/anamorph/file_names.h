@@ -3,6 +3,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+
+#include "anamorph/operation/operation.h"
 
 namespace anamorph {
 
@@ -17,5 +20,13 @@ void check_file_name(const std::string& key, const std::string& name);
 std::string content_state(const std::string& name);
 /// The same, which stays in neither case.
 std::string file_state(const std::string& name);
+
+/// Is the part before the first `?` a name that ends in `extension` (".pano"), in any case of letters?
+bool has_extension(std::string_view name, std::string_view extension);
+
+/// The operation whose recipes have such a name, or that draws files of such a name, or null.
+const Operation* operation_of(std::string_view name);
+/// Is it the name of a file that the operation draws as it stands?
+bool ends_as_main_file(const Operation& operation, std::string_view name);
 
 }  // namespace anamorph

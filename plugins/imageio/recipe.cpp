@@ -66,15 +66,6 @@ std::string state_of(const std::string& name) {
            "\n";
 }
 
-/// Is it the name of a file that the operation draws as it stands?
-bool ends_as_main_file(const Operation& operation, std::string_view name) {
-    return std::any_of(operation.endings.begin(), operation.endings.end(), [&](const std::string& ending) {
-        std::string dotted = ".";
-        dotted += ending;
-        return has_extension(name, dotted);
-    });
-}
-
 /// Where the source's name is none of a file, but stands for six: finds them.
 void find_faces(Recipe& recipe, const std::string& key) {
     SideFile& source = recipe.files[key];
@@ -139,21 +130,6 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
 }
 
 }  // namespace
-
-bool has_extension(std::string_view name, std::string_view extension) {
-    const std::string_view base = base_of(name);
-    if (base.size() <= extension.size()) return false;
-    const std::string_view end = base.substr(base.size() - extension.size());
-    return std::equal(end.begin(), end.end(), extension.begin(),
-                      [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
-}
-
-const Operation* operation_of(std::string_view name) {
-    for (const Operation* operation : operations())
-        if (has_extension(name, "." + operation->name) || ends_as_main_file(*operation, name))
-            return operation;
-    return nullptr;
-}
 
 Recipe RecipeReader::load(const std::string& name, const std::vector<Assignment>& config) {
     const Operation* operation = operation_of(name);

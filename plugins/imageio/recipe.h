@@ -8,13 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "anamorph/file_names.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 
-/// Is the part before the first `?` a name that ends in `extension` (".pano"), in any case of letters?
-bool has_extension(std::string_view name, std::string_view extension);
 inline constexpr std::string_view kBufferExtension = ".anabuf";
 
 /// Runs `body`; where it throws an Error that does not name the recipe, the recipe is named in front.
@@ -28,9 +27,6 @@ decltype(auto) in_recipe(std::string_view name, const Body& body) {
         throw Error("in \"" + base + "\": " + what);
     }
 }
-
-/// The operation whose recipes have such a name, or that draws files of such a name, or null.
-const Operation* operation_of(std::string_view name);
 
 struct Recipe {
     const Operation* operation;
