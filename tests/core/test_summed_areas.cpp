@@ -264,6 +264,86 @@ TEST(SummedAreas, OnlyTilesThatAreAskedForAreRead) {
     EXPECT_FALSE(SummedAreas(broken).mean_over_poles(5, 5, 2, 2, pixel));
 }
 
+/// A source with levels of its own, each the mean of 2 x 2 texels of the one before, that counts what is read of each.
+class LeveledTexels final : public Source {
+  public:
+    explicit LeveledTexels(const Texels& base) {
+        m_levels.push_back(base);
+        while (m_levels.back().size.width > 8) {
+            Texels& fine = m_levels.back();
+            Texels coarse({fine.size.width / 2, fine.size.height / 2}, 1, PixelType::float32);
+            coarse.fill([&](int x, int y, int) {
+                double sum = 0;
+                for (const int i : {0, 1})
+                    for (const int j : {0, 1})
+                        sum += double{load_channel(fine.at(2 * x + i, 2 * y + j, 0), PixelType::float32)};
+                return sum / 4;
+            });
+            m_levels.push_back(coarse);
+        }
+        pixels.resize(m_levels.size());
+        for (int level = 0; level < levels(); ++level)
+            m_sums.push_back(std::make_unique<const SummedAreas>(*this, level));
+    }
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 1; }
+    int unassociated_alpha() const noexcept override { return -1; }
+    int levels() const noexcept override { return static_cast<int>(m_levels.size()); }
+    Size size(int level) const noexcept override { return m_levels[static_cast<std::size_t>(level)].size; }
+    bool read(int level, const Box& box, std::byte* texels, std::ptrdiff_t stride) const noexcept override {
+        pixels[static_cast<std::size_t>(level)] += std::int64_t{box.width()} * box.height();
+        return m_levels[static_cast<std::size_t>(level)].source().read(0, box, texels, stride);
+    }
+    const SummedAreas* summed_areas(int level) const noexcept override {
+        return m_sums[static_cast<std::size_t>(level)].get();
+    }
+    mutable std::vector<std::int64_t> pixels;
+
+  private:
+    std::vector<Texels> m_levels;
+    std::vector<std::unique_ptr<const SummedAreas>> m_sums;
+};
+
+TEST(SummedAreas, LargeRectanglesReadTheLevelThatIsEnoughWithinItsBound) {
+    Texels texels({1024, 512}, 1, PixelType::float32);
+    std::mt19937 random(4711);
+    std::uniform_real_distribution<double> share(0, 1);
+    // Of one checkered half, where the edge of a rectangle is as wrong as it can be, and one of noise.
+    texels.fill([&](int x, int y, int) { return x < 512 ? (x / 4 + y / 4) % 2 : share(random); });
+    const LeveledTexels source(texels);
+    SummedLevels sums(source);
+    double worst = 0;
+    for (int k = 0; k < 300; ++k) {
+        const double w = 130 + 200 * share(random), h = 130 + 150 * share(random),
+                     x = w / 2 + (1024 - w) * share(random), y = h / 2 + (512 - h) * share(random);
+        float mean = -1;
+        ASSERT_TRUE(sums.mean(x, y, w, h, Wrap::clamp, &mean));
+        long double sum = 0;
+        const auto cover = [](int i, double from, double to) {
+            return std::max(0.0, std::min(to, i + 1.0) - std::max(from, double(i)));
+        };
+        for (int j = 0; j < 512; ++j)
+            if (const double down = cover(j, y - h / 2, y + h / 2); down > 0)
+                for (int i = 0; i < 1024; ++i)
+                    sum += static_cast<long double>(cover(i, x - w / 2, x + w / 2) * down *
+                                                    double{load_channel(texels.at(i, j, 0), texels.type)});
+        const double error = std::fabs(static_cast<double>(sum / (w * h)) - double{mean});
+        // Of the level whose texels are 4 of the base.
+        ASSERT_LE(error, (4 / w + 4 / h) / 2 + 1e-6) << "seed 4711, rectangle " << k;
+        worst = std::max(worst, error);
+    }
+    EXPECT_GT(worst, 1e-5);
+    EXPECT_EQ(source.pixels[0], 0);
+    EXPECT_EQ(source.pixels[1], 0);
+    EXPECT_GT(source.pixels[2], 0);
+    // Thin ones need all texels, however long they are.
+    float mean = 0;
+    ASSERT_TRUE(sums.mean(500, 200, 400, 20, Wrap::clamp, &mean));
+    EXPECT_GT(source.pixels[0], 0);
+    ASSERT_TRUE(sums.mean_over_poles(500, 20, 300, 300, &mean));
+    EXPECT_GT(source.pixels[3], 0);
+}
+
 TEST(SummedAreas, RectanglesOverTilesAreThoseOfAllTexels) {
     for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32})
         for (const int alpha : {-1, 1}) {

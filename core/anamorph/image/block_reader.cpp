@@ -670,8 +670,8 @@ bool BlockReader::for_each_footprint(const Block& block, const At& at, const Box
         });
 }
 
-/// The pixels of a block by one filter where that serves all, else by its largest cells whose pixels all have taps of their own or
-/// share a filter.
+/// The pixels of a block by one filter where that serves all, else at once where all have taps of their own, else by its largest cells
+/// whose pixels do or share a filter.
 bool BlockReader::own_rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
@@ -683,7 +683,8 @@ bool BlockReader::own_rows(const Block& block, const BlockPoints& points, const 
     const Steps steps(at, block);
     const auto draw_cell = [&](const auto& self, const Box& cell) -> bool {
         if (part_of(cell, block, part).empty()) return true;
-        const simd::OwnKind kind = own_kind(cell);
+        const simd::OwnKind kind =
+            m_own_reach.kind == simd::OwnKind::others ? kind_of_cell(cell) : m_own_reach.kind;
         if (kind != simd::OwnKind::others) return body(cell, own_filtering(kind));
         const Jacobian j = steps.jacobian(cell);
         if (texels_in(cell) <= 1 || steps.alike(cell, j)) return body(cell, filtering(j));
@@ -696,26 +697,34 @@ bool BlockReader::own_rows(const Block& block, const BlockPoints& points, const 
 void BlockReader::find_own(const Block& block, const BlockPoints& points) {
     constexpr std::ptrdiff_t kStride = simd::kRowRoom, kPlane = kStride * Block::kMaxSide;
     m_own_taps.resize(std::size_t{4 * kPlane});
-    m_own_kinds.resize(std::size_t{kPlane});
+    m_own_counts.resize(std::size_t{kPlane});
     float* const taps = m_own_taps.data();
-    m_own = {taps, taps + kPlane, taps + 2 * kPlane, taps + 3 * kPlane, m_own_kinds.data(), kStride};
-    simd::own_taps(points.x, points.y, points.row_stride, block.box.width(), block.box.height(), m_own);
+    m_own = {taps, taps + kPlane, taps + 2 * kPlane, taps + 3 * kPlane, m_own_counts.data(), kStride};
+    const float widest =
+        m_chooser.levels() > 1 ? simd::kWidestOnFinest : std::numeric_limits<float>::infinity();
+    m_own_reach = simd::own_taps(points.x, points.y, points.row_stride, block.box.width(), block.box.height(),
+                                 widest, m_own);
 }
 
 /// What serves all pixels of a cell.
-simd::OwnKind BlockReader::own_kind(const Box& cell) const {
+simd::OwnKind BlockReader::kind_of_cell(const Box& cell) const {
     std::int32_t most = 0;
     for (int j = cell.y0; j < cell.y1; ++j) {
-        const std::int32_t* const kinds = m_own.kind + j * m_own.stride;
-        for (int i = cell.x0; i < cell.x1; ++i) most = std::max(most, kinds[i]);
+        const std::int32_t* const taps = m_own.taps + j * m_own.stride;
+        for (int i = cell.x0; i < cell.x1; ++i) most = std::max(most, taps[i]);
     }
-    return static_cast<simd::OwnKind>(most);
+    return simd::own_kind(most);
 }
 
 BlockReader::Filtering BlockReader::own_filtering(simd::OwnKind kind) const {
     Filtering f = filtering({});
     f.own = kind != simd::OwnKind::one;
-    if (f.own) f.reach_x = f.reach_y = kind == simd::OwnKind::nine ? 0.5 : simd::kOwnReach;
+    if (f.own) f.reach_x = f.reach_y = 0.5;
+    // What rounding moves taps by is far below the half of a texel that windows have to spare.
+    if (kind == simd::OwnKind::some) {
+        f.reach_x = std::max(f.reach_x, double{m_own_reach.x});
+        f.reach_y = std::max(f.reach_y, double{m_own_reach.y});
+    }
     return f;
 }
 

@@ -180,7 +180,7 @@ class BlockReader {
                         const Body& body);
     bool own_rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
     void find_own(const Block& block, const BlockPoints& points);
-    simd::OwnKind own_kind(const Box& cell) const;
+    simd::OwnKind kind_of_cell(const Box& cell) const;
     Filtering own_filtering(simd::OwnKind kind) const;
     static bool ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y);
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
@@ -227,8 +227,9 @@ class BlockReader {
     std::vector<float> m_rests;
     std::vector<Point<int>> m_over_edge;
     std::vector<float> m_own_taps;
-    std::vector<std::int32_t> m_own_kinds;
+    std::vector<std::int32_t> m_own_counts;
     simd::OwnTapRows m_own{};        ///< taps of the block's pixels, counted from its corner
+    simd::OwnReach m_own_reach;      ///< of all of them
     const PartialPixels* m_partial;  ///< of the map, or null
     std::vector<PartialPixel> m_partial_pixels;
 };

@@ -82,11 +82,16 @@ inline constexpr int kMaxTaps = 64;
 /// The most pixels that a row has.
 inline constexpr int kMaxRow = 64;
 
-/// Taps that each pixel has for itself, in place of those of Texels: four, at the sums and differences of (x_i, y_i) and
-/// (x_j, y_j) either way, in texels. Arrays with room for 16 more, or null.
+/// Taps that each pixel has for itself, in place of those of Texels. Arrays with room for 16 more, or null. Pixels of which `taps` says
+/// less than 2 have four, at the sums and differences of (x_i, y_i) and (x_j, y_j) either way, in texels, all of them within half a texel.
+/// Of others its bits from kTapsAcrossShift and kTapsDownShift on are how many there are each way: tap (a, b) stands 2 a - (count - 1)
+/// times (x_i, y_i) from the point, and so along (x_j, y_j) for b.
 struct OwnTaps {
     const float *x_i = nullptr, *y_i = nullptr, *x_j = nullptr, *y_j = nullptr;
+    const std::int32_t* taps = nullptr;
 };
+/// Where `taps` has the counts.
+inline constexpr int kTapsAcrossShift = 8, kTapsDownShift = 16;
 
 /// Offsets of `count` <= kMaxRow pixels in texels (centres at + 0.5): (x[i], y[i]), or (whole_x[i] + x[i],
 /// whole_y[i] + y[i]) where those are given.

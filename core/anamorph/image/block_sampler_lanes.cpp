@@ -14,6 +14,7 @@
 
 #include "anamorph/image/filter.h"
 #include "anamorph/image/pixel.h"
+#include "anamorph/image/texel_types.h"
 #include "anamorph/image/weightless.h"
 // Compiled for each instruction set.
 #include "anamorph/image/block_rows-inl.h"
@@ -282,19 +283,48 @@ HWY_INLINE void SampleNine(const Texels& s, const Offsets& at, float* HWY_RESTRI
     SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
 }
 
-/// Tap k of the four that a pixel has for itself.
-HWY_INLINE Tap OwnTap(const OwnTaps& own, int i, int k) {
-    const float a = k & 1 ? 1.0f : -1.0f, b = k & 2 ? 1.0f : -1.0f;
-    return {a * own.x_i[i] + b * own.x_j[i], a * own.y_i[i] + b * own.y_j[i]};
-}
+/// The taps that pixel i of a row has for itself.
+class TapsOfPixel {
+  public:
+    HWY_INLINE TapsOfPixel(const OwnTaps& own, int i)
+        : m_a{own.x_i[i], own.y_i[i]}, m_b{own.x_j[i], own.y_j[i]}, m_near(own.taps[i] < 2) {
+        if (m_near) return;
+        m_across = (own.taps[i] >> kTapsAcrossShift) & 255;
+        m_down = own.taps[i] >> kTapsDownShift;
+    }
+    /// Do nine texels suffice?
+    HWY_INLINE bool IsNear() const { return m_near; }
+    HWY_INLINE int Count() const { return m_across * m_down; }
+    /// Finds taps k, k + 1, ... from a point.
+    HWY_INLINE void From(float x, float y, int k, hn::Vec<Floats>& to_x, hn::Vec<Floats>& to_y) const {
+        const Floats d;
+        // Half a tap more is at least 1/32 of a row from the next one, however it is rounded.
+        const auto tap = hn::Add(hn::Iota(d, 0.0f), hn::Set(d, static_cast<float>(k)));
+        const auto b = hn::Floor(hn::Mul(hn::Add(tap, hn::Set(d, 0.5f)), hn::Set(d, kInverse[m_across])));
+        const auto a = hn::Sub(tap, hn::Mul(b, hn::Set(d, static_cast<float>(m_across))));
+        const auto da = hn::Add(hn::Add(a, a), hn::Set(d, static_cast<float>(1 - m_across)));
+        const auto db = hn::Add(hn::Add(b, b), hn::Set(d, static_cast<float>(1 - m_down)));
+        to_x = Fused(da, hn::Set(d, m_a.x), Fused(db, hn::Set(d, m_b.x), hn::Set(d, x)));
+        to_y = Fused(da, hn::Set(d, m_a.y), Fused(db, hn::Set(d, m_b.y), hn::Set(d, y)));
+    }
+    /// Do all of them lie together?
+    HWY_INLINE bool AreOne() const {
+        const auto across = static_cast<float>(m_across - 1), down = static_cast<float>(m_down - 1);
+        return across * std::fabs(m_a.x) + down * std::fabs(m_b.x) < kSameTap &&
+               across * std::fabs(m_a.y) + down * std::fabs(m_b.y) < kSameTap;
+    }
 
-/// Does a tap of a pixel lie more than half a texel away?
-HWY_INLINE bool ReachFar(const OwnTaps& own, int i) {
-    return !(std::fabs(own.x_i[i]) + std::fabs(own.x_j[i]) <= 0.5f &&
-             std::fabs(own.y_i[i]) + std::fabs(own.y_j[i]) <= 0.5f);
-}
+  private:
+    static constexpr float kInverse[] = {0,        1 / 1.f,  1 / 2.f,  1 / 3.f,  1 / 4.f,  1 / 5.f,
+                                         1 / 6.f,  1 / 7.f,  1 / 8.f,  1 / 9.f,  1 / 10.f, 1 / 11.f,
+                                         1 / 12.f, 1 / 13.f, 1 / 14.f, 1 / 15.f, 1 / 16.f};
 
-/// Pixels with taps of their own: nine texels where these suffice, else four taps.
+    Tap m_a, m_b;
+    int m_across = 2, m_down = 2;
+    bool m_near;
+};
+
+/// Pixels with taps of their own: nine texels where these suffice, else tap by tap.
 template <class T, int kChannels>
 HWY_INLINE void SampleOwn(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const Quad d;
@@ -306,25 +336,26 @@ HWY_INLINE void SampleOwn(const Texels& s, const Offsets& at, float* HWY_RESTRIC
     WeightsOfRow w;
     WeighNine(TapsOfRow(s, at), p, at.count, w);
     SampleNineRow<T, kChannels>(s, p.offset, at.count, w, out);
+    Positions<kMaxTaps + kLanes> of_tap;
+    const auto row_elements = hn::Set(Ints(), static_cast<int32_t>(row)), pixel = hn::Set(Ints(), channels);
     for (int i = 0; i < at.count; ++i) {
-        if (!ReachFar(at.own, i)) continue;
-        ptrdiff_t offset[4];
-        float fx[4], fy[4];
-        for (int k = 0; k < 4; ++k) {
-            const Tap tap = OwnTap(at.own, i, k);
-            const float x = p.fx[i] - 0.5f + tap.x, y = p.fy[i] - 0.5f + tap.y;
-            const float tx = std::floor(x), ty = std::floor(y);
-            offset[k] = p.offset[i] + static_cast<int>(ty) * row + static_cast<int>(tx) * channels;
-            fx[k] = x - tx;
-            fy[k] = y - ty;
+        const TapsOfPixel taps(at.own, i);
+        if (taps.IsNear()) continue;
+        const int count = taps.Count();
+        for (int k = 0; k < count; k += static_cast<int>(kLanes)) {
+            hn::Vec<Floats> x, y;
+            taps.From(p.fx[i] - 0.5f, p.fy[i] - 0.5f, k, x, y);
+            Locate(x, y, row_elements, pixel, k, of_tap);
         }
+        const auto share = hn::Set(d, 1.0f / static_cast<float>(count));
         for (int c = 0; c < channels; c += kQuad) {
-            auto sum = Bilinear<T, kChannels>(origin + offset[0] + c, row, channels, fx[0], fy[0]);
-            for (int k = 1; k < 4; ++k)
-                sum =
-                    hn::Add(sum, Bilinear<T, kChannels>(origin + offset[k] + c, row, channels, fx[k], fy[k]));
+            const T* const from = origin + p.offset[i] + c;
+            auto sum = hn::Zero(d);
+            for (int k = 0; k < count; ++k)
+                sum = hn::Add(sum, Bilinear<T, kChannels>(from + of_tap.offset[k], row, channels,
+                                                          of_tap.fx[k], of_tap.fy[k]));
             HWY_ALIGN float v[kQuad];
-            hn::Store(hn::Mul(sum, hn::Set(d, 0.25f)), d, v);
+            hn::Store(hn::Mul(sum, share), d, v);
             std::memcpy(out + i * channels + c, v,
                         sizeof(float) * static_cast<size_t>(HWY_MIN(kQuad, channels - c)));
         }
@@ -404,15 +435,18 @@ HWY_INLINE bool TapsLieTogether(const Texels& s) {
     return all;
 }
 
-/// Finds the positions of a tap that each pixel has for itself; those that lie together are one in their middle.
+/// Finds the positions of a tap that each pixel has for itself, if it has so many; those that lie together are one in their middle.
 HWY_INLINE void LocateOwn(const Offsets& at, int k, int channels, int32_t row, Positions<kRowRoom>& p) {
     HWY_ALIGN float x[kRowRoom] = {}, y[kRowRoom] = {};
     for (int i = 0; i < at.count; ++i) {
-        const Tap tap = OwnTap(at.own, i, k), other = OwnTap(at.own, i, k ^ 1);
-        const bool together = HWY_MAX(HWY_MAX(std::fabs(tap.x), std::fabs(tap.y)),
-                                      HWY_MAX(std::fabs(other.x), std::fabs(other.y))) < kSameTap;
-        x[i] = at.x[i] + (together ? 0 : tap.x);
-        y[i] = at.y[i] + (together ? 0 : tap.y);
+        const TapsOfPixel taps(at.own, i);
+        x[i] = at.x[i];
+        y[i] = at.y[i];
+        if (k >= taps.Count() || taps.AreOne()) continue;
+        hn::Vec<Floats> tap_x, tap_y;
+        taps.From(x[i], y[i], k, tap_x, tap_y);
+        x[i] = hn::GetLane(tap_x);
+        y[i] = hn::GetLane(tap_y);
     }
     Locate({x, y, at.count, at.whole_x, at.whole_y}, 0, at.count, Tap{}, 0.5f, channels, row, p);
 }
@@ -424,14 +458,19 @@ void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const auto row = static_cast<int32_t>(s.row_stride / bytes);
     std::vector<double> sum(static_cast<size_t>(count));
     const bool own = at.own.x_i, together = !own && TapsLieTogether(s);
-    const int taps = own ? 4 : together ? 1 : s.tap_count;
-    for (int tap = 0; tap < taps; ++tap) {
+    const auto taps_of = [&](int i) {
+        return own ? TapsOfPixel(at.own, i).Count() : together ? 1 : s.tap_count;
+    };
+    int most = 0;
+    for (int i = 0; i < at.count; ++i) most = HWY_MAX(most, taps_of(i));
+    for (int tap = 0; tap < most; ++tap) {
         Positions<kRowRoom> p;
         if (own)
             LocateOwn(at, tap, s.channels, row, p);
         else
             Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
         for (int i = 0; i < at.count; ++i) {
+            if (tap >= taps_of(i)) continue;
             float wx[4], wy[4];
             KernelWeights(s.kernel, p.fx[i], wx);
             KernelWeights(s.kernel, p.fy[i], wy);
@@ -455,7 +494,8 @@ void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
         }
     }
     for (int k = 0; k < count; ++k)
-        if (!std::isfinite(out[k])) out[k] = static_cast<float>(sum[static_cast<size_t>(k)] / taps);
+        if (!std::isfinite(out[k]))
+            out[k] = static_cast<float>(sum[static_cast<size_t>(k)] / taps_of(k / s.channels));
 }
 
 /// Can a filter make a channel infinite, or no number, where it should not be? Integers are finite, and nearest moves texels.
@@ -511,19 +551,30 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out) {
     with(std::integral_constant<int, 0>{});
 }
 
-void SampleRow(const Texels& s, const Offsets& at, float* out) {
-    switch (s.type) {
+template <PixelType kType, class T, class Loop>
+HWY_INLINE void ForTexelsOf(const Loop& loop) {
+    if constexpr (has_loops(kType))
+        loop(T{});
+    else
+        refuse_texels(kType);
+}
+/// Calls `loop` with a texel of type `type`, for its C++ type.
+template <class Loop>
+HWY_INLINE void ForTexels(PixelType type, const Loop& loop) {
+    switch (type) {
         case PixelType::uint8:
-            return SampleTyped<uint8_t>(s, at, out);
+            return ForTexelsOf<PixelType::uint8, uint8_t>(loop);
         case PixelType::uint16:
-            return SampleTyped<uint16_t>(s, at, out);
+            return ForTexelsOf<PixelType::uint16, uint16_t>(loop);
         case PixelType::half:
-            SampleTyped<hwy::float16_t>(s, at, out);
-            break;
+            return ForTexelsOf<PixelType::half, hwy::float16_t>(loop);
         case PixelType::float32:
-            SampleTyped<float>(s, at, out);
-            break;
+            return ForTexelsOf<PixelType::float32, float>(loop);
     }
+}
+
+void SampleRow(const Texels& s, const Offsets& at, float* out) {
+    ForTexels(s.type, [&]<class T>(T) { SampleTyped<T>(s, at, out); });
     Mend(s, at, out);
 }
 
@@ -691,16 +742,7 @@ void DrawTyped(const Drawing& to) {
 }
 
 void DrawBlock(const Drawing& drawing) {
-    switch (drawing.texels.type) {
-        case PixelType::uint8:
-            return DrawTyped<uint8_t>(drawing);
-        case PixelType::uint16:
-            return DrawTyped<uint16_t>(drawing);
-        case PixelType::half:
-            return DrawTyped<hwy::float16_t>(drawing);
-        case PixelType::float32:
-            return DrawTyped<float>(drawing);
-    }
+    ForTexels(drawing.texels.type, [&]<class T>(T) { DrawTyped<T>(drawing); });
 }
 
 }  // namespace HWY_NAMESPACE

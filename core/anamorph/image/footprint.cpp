@@ -35,26 +35,6 @@ double tap_energy_slope(int taps, double spacing) {
     return sum / taps / taps;
 }
 
-/// The spacing at which `taps` taps have `energy`, which falls from 2/3 to 2/3 over `taps` as they part: by Newton's iteration, kept
-/// between the nearest and the farthest that it may be.
-double spacing_for(int taps, double energy) {
-    if (taps == 1) return 0;
-    // Of two taps d^2 (1 - d / 2) is 4/3 - 2 energy up to d = 1; many are like a box, whose energy is box_energy.
-    const double root = std::sqrt(std::max(0.0, 4.0 / 3 - 2 * energy));
-    const double box = (1 + std::sqrt(std::max(0.0, 1 - 4 * energy / 3))) / (2 * energy);
-    double spacing = taps == 2 ? root * (1 + 0.25 * root + 0.3 * root * root) : box / taps;
-    double near = 0, far = 2;
-    // To 1e-6 of energy, which is less than 1e-4 texels wherever taps are farther apart than that.
-    for (int i = 0; i < 40; ++i) {
-        spacing = spacing > near && spacing < far ? spacing : 0.5 * (near + far);
-        const double off = tap_energy(taps, spacing) - energy;
-        if (std::fabs(off) <= 1e-6) break;
-        (off > 0 ? near : far) = spacing;
-        spacing -= off / tap_energy_slope(taps, spacing);
-    }
-    return spacing;
-}
-
 /// One side of the footprint on a level: its length in texels and the energy its taps must have.
 struct Side {
     double texels, energy;
@@ -100,6 +80,26 @@ double tap_energy(int taps, double spacing) {
     for (int apart = 1; apart < taps && apart * spacing < 2; ++apart)
         sum += 2 * (taps - apart) * tent_correlation(apart * spacing);
     return sum / taps / taps;
+}
+
+// The energy falls from 2/3 to 2/3 over `taps` as they part: Newton's iteration, kept between the nearest and the farthest that the
+// spacing may be.
+double spacing_for(int taps, double energy) {
+    if (taps == 1) return 0;
+    // Of two taps d^2 (1 - d / 2) is 4/3 - 2 energy up to d = 1; many are like a box, whose energy is box_energy.
+    const double root = std::sqrt(std::max(0.0, 4.0 / 3 - 2 * energy));
+    const double box = (1 + std::sqrt(std::max(0.0, 1 - 4 * energy / 3))) / (2 * energy);
+    double spacing = taps == 2 ? root * (1 + 0.25 * root + 0.3 * root * root) : box / taps;
+    double near = 0, far = 2;
+    // To 1e-6 of energy, which is less than 1e-4 texels wherever taps are farther apart than that.
+    for (int i = 0; i < 40; ++i) {
+        spacing = spacing > near && spacing < far ? spacing : 0.5 * (near + far);
+        const double off = tap_energy(taps, spacing) - energy;
+        if (std::fabs(off) <= 1e-6) break;
+        (off > 0 ? near : far) = spacing;
+        spacing -= off / tap_energy_slope(taps, spacing);
+    }
+    return spacing;
 }
 
 FootprintChooser::FootprintChooser(const Source& source)

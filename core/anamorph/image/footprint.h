@@ -56,6 +56,8 @@ class TapOffsets {
 double box_energy(double width);
 /// Energy after the mean of `taps` linear interpolations `spacing` texels apart, at a random phase.
 double tap_energy(int taps, double spacing);
+/// The spacing, in [0, 2] texels, at which so many taps have an energy, to 1e-6 of it.
+double spacing_for(int taps, double energy);
 
 /// Chooses footprints for one source.
 class FootprintChooser {

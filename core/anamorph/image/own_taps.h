@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Taps of each pixel of a block for itself, where its footprint is small: by the rule of image/footprint.h, from how far its
+// Taps of each pixel of a block for itself, where its footprint is not large: by the rule of image/footprint.h, from how far its
 // source point is from those of its neighbours.
 #pragma once
 
@@ -10,34 +10,64 @@
 
 namespace anamorph::simd {
 
-/// The longest side of a footprint, in source pixels, that gets taps here. Up to 1 there is one tap to a side. Up to 2 there are
-/// two, no more than a texel apart (box_energy(2) is 5/12, tap_energy(2, 1) as well), on level 0, for the least stretch is no
-/// longer than a side (FootprintChooser).
-inline constexpr float kLongestOwnSide = 2;
-
-/// What taps a pixel takes: the later ones include the earlier ones.
+/// What serves pixels: of several, the greatest one serves all.
 enum class OwnKind : std::int32_t {
-    one,    ///< one: the map magnifies
-    nine,   ///< within half a texel of the point, each way
-    four,   ///< farther away
-    others  ///< the footprint is larger, or none
+    one,     ///< one tap: the map magnifies
+    nine,    ///< two taps along each side, within half a texel of the point each way
+    some,    ///< some taps along each side
+    others,  ///< too many taps, or taps on a coarser level, or no footprint
 };
 
-/// Rows of taps, `stride` entries apart, with room for 16 more behind each.
+/// What says of a pixel which taps it has.
+inline constexpr std::int32_t kNoOwnTaps = 0x7fffffff;
+inline OwnKind own_kind(std::int32_t taps) {
+    return taps == kNoOwnTaps ? OwnKind::others : static_cast<OwnKind>(taps < 2 ? taps : 2);
+}
+
+/// Taps along a side of length l in source pixels: the fewest that can leave as little of white noise as the mean over it does, as
+/// far apart as they have to be for that (footprint.h). n taps leave 2/3 / n at least, so that they serve ratios r, 2/3 over the mean's
+/// (1 - 1 / (3 l)) / l, that is, 2 l^2 / (3 l - 1), from n - 1 to n. Half of their distance is given at kNodes + 1 places of
+/// sqrt(n - r), between which it is linear: they leave 2/3 / r to within 1.5e-4 of itself.
+struct SpacingTable {
+    static constexpr int kMost = 16, kNodes = 32;
+    /// The longest side; kMost taps serve 23.66.
+    static constexpr float kLongest = 23.6f;
+
+    float half_spacing[kMost + 1][kNodes + 1];
+
+    /// The one that there is.
+    static const SpacingTable& get();
+
+  private:
+    SpacingTable();
+};
+
+/// The most taps of a pixel.
+inline constexpr int kMostOwnTaps = kMaxTaps;
+
+/// Rows of taps (OwnTaps), `stride` entries apart, with room for 16 more behind each.
 struct OwnTapRows {
     float *x_i, *y_i, *x_j, *y_j;
-    std::int32_t* kind;
+    std::int32_t* taps;
     std::ptrdiff_t stride;
 
-    OwnTaps at(std::ptrdiff_t k) const { return {x_i + k, y_i + k, x_j + k, y_j + k}; }
+    OwnTaps at(std::ptrdiff_t k) const { return {x_i + k, y_i + k, x_j + k, y_j + k, taps + k}; }
 };
 
-/// The farthest that own taps reach from their point along an axis, in texels: half a texel for each side, which may be parallel.
-inline constexpr double kOwnReach = 1;
+/// How far taps reach from their points along the axes of the source, at most, and what serves all pixels.
+struct OwnReach {
+    float x = 0, y = 0;
+    OwnKind kind = OwnKind::one;
+};
 
-/// Finds the taps of all pixels of a block at least two pixels wide and high from its points; rows of them have room for 16 more.
-/// A side is the shorter one of the steps to the two neighbours in the block, which does not cross a seam.
-void own_taps(const float* x, const float* y, std::ptrdiff_t row_stride, int width, int height,
-              const OwnTapRows& to);
+/// The longest that the narrow side of a footprint may be for taps on the source itself, where two across it suffice: beyond it
+/// FootprintChooser goes on to a coarser level. (3 + sqrt(5)) / 2, where box_energy is 1/3.
+inline constexpr float kWidestOnFinest = 2.618034f;
+
+/// Finds the taps on the source itself of all pixels of a block at least two pixels wide and high from its points; rows of them have
+/// room for 16 more. A side is the shorter one of the steps to the two neighbours in the block, which does not cross a seam. Footprints
+/// whose least stretch is more than `widest` have none here.
+OwnReach own_taps(const float* x, const float* y, std::ptrdiff_t row_stride, int width, int height,
+                  float widest, const OwnTapRows& to);
 
 }  // namespace anamorph::simd

@@ -59,7 +59,8 @@ HWY_INLINE void WeighNine(const TapsOfRow& taps, const Positions<kRowRoom>& p, i
     const Floats d;
     const Ints di;
     const auto half = hn::Set(d, 0.5f), one = hn::Set(d, static_cast<float>(1 << kWeightBits));
-    const auto whole = [&](hn::Vec<Floats> w) HWY_ATTR { return hn::NearestInt(hn::Mul(w, one)); };
+    // They are at most 1, so that no conversion has to look for what integers cannot hold.
+    const auto whole = [&](hn::Vec<Floats> w) HWY_ATTR { return ToInts(hn::Mul(w, one)); };
     const auto two = [&](hn::Vec<Ints> low, hn::Vec<Ints> high)
                          HWY_ATTR { return hn::Or(low, hn::ShiftLeft<16>(high)); };
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
@@ -178,6 +179,17 @@ HWY_INLINE hn::Vec<Sums> AddPairs(hn::Vec<Words> a, hn::Vec<Words> b) {
     return hn::RearrangeToOddPlusEven(sum, odd);
 }
 
+/// The bytes of each block of 16 that `order` names; 0 for 0x80. Highway 1.0 looks them up one by one in WebAssembly, whose engines had no
+/// instruction for that once.
+HWY_INLINE hn::Vec<Bytes> Reordered(hn::Vec<Bytes> bytes, const uint8_t* order) {
+    const auto from = hn::LoadDup128(Bytes(), order);
+#if HWY_TARGET == HWY_WASM
+    return hn::Vec<Bytes>{wasm_i8x16_swizzle(bytes.raw, from.raw)};
+#else
+    return hn::TableLookupBytesOr0(bytes, from);
+#endif
+}
+
 /// 16 bytes from `p`, and in a vector of two blocks 16 from `q`.
 template <class D>
 HWY_INLINE hn::Vec<D> LoadBlocks(D d, const uint8_t* p, const uint8_t* q) {
@@ -193,7 +205,7 @@ HWY_INLINE hn::Vec<Words> Neighbours(hn::Vec<Bytes> texels) {
     constexpr uint8_t k = kChannels, no = 0x80;
     HWY_ALIGN static constexpr uint8_t kPairs[16] = {0, no, k,     no, 1, no, k + 1, no,
                                                      2, no, k + 2, no, 3, no, k + 3, no};
-    return hn::BitCast(Words(), hn::TableLookupBytesOr0(texels, hn::LoadDup128(Bytes(), kPairs)));
+    return hn::BitCast(Words(), Reordered(texels, kPairs));
 }
 
 /// Pixels k and k + 4 of a group, in units of 2^-kWeightBits.
@@ -227,10 +239,10 @@ HWY_INLINE void StoreGroup(V v0, V v1, V v2, V v3, uint8_t* HWY_RESTRICT out) {
     if constexpr (kChannels == 4) {
         HWY_ALIGN static constexpr uint8_t kOrder[16] = {0, 4, 8, 12, 2, 6, 10, 14,
                                                          1, 5, 9, 13, 3, 7, 11, 15};
-        hn::StoreU(hn::TableLookupBytes(mixed, hn::LoadDup128(d8, kOrder)), d8, out);
+        hn::StoreU(Reordered(mixed, kOrder), d8, out);
     } else {
         HWY_ALIGN static constexpr uint8_t kOrder[16] = {0, 4, 8, 2, 6, 10, 1, 5, 9, 3, 7, 11, 0, 0, 0, 0};
-        const auto pixels = hn::TableLookupBytes(mixed, hn::LoadDup128(d8, kOrder));
+        const auto pixels = Reordered(mixed, kOrder);
         const Block16 half;
         if constexpr (kBlocks == 2) {
             hn::StoreU(hn::LowerHalf(half, pixels), half, out);
@@ -261,9 +273,7 @@ HWY_INLINE hn::Vec<Words> RightOnes(hn::Vec<Bytes> upper, hn::Vec<Bytes> lower) 
                                                     k + 2, no, no, no, k + 3, no, no, no};
     HWY_ALIGN static constexpr uint8_t kOdd[16] = {no, no, k,     no, no, no, k + 1, no,
                                                    no, no, k + 2, no, no, no, k + 3, no};
-    const Bytes d;
-    return hn::BitCast(Words(), hn::Or(hn::TableLookupBytesOr0(upper, hn::LoadDup128(d, kEven)),
-                                       hn::TableLookupBytesOr0(lower, hn::LoadDup128(d, kOdd))));
+    return hn::BitCast(Words(), hn::Or(Reordered(upper, kEven), Reordered(lower, kOdd)));
 }
 
 /// Pixels k and k + 4 of a group, from nine texels each, in units of 2^-kWeightBits.

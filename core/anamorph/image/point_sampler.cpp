@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "anamorph/image/pixel.h"
-#include "anamorph/image/summed_areas.h"
 #include "anamorph/image/weightless.h"
 
 namespace anamorph {
@@ -95,6 +94,7 @@ void weigh(const Window& window, const Taps& across, const Taps& down, bool clam
 PointSampler::PointSampler(const Source& source, const Border& border)
     : m_source(source),
       m_border(border),
+      m_sums(source),
       m_reader(source, border),
       m_tap(static_cast<std::size_t>(source.channels())),
       m_sum(m_tap.size()),
@@ -191,9 +191,7 @@ bool PointSampler::sample(Filter filter, const FootprintChooser& chooser, const 
 }
 
 bool PointSampler::mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept {
-    if (!m_sums) m_sums = m_source.summed_areas();
-    if (!m_sums) return false;
-    return m_sums->mean(x, y, rectangle.x_i, rectangle.y_j, m_border.wrap(), pixel);
+    return m_sums.mean(x, y, rectangle.x_i, rectangle.y_j, m_border.wrap(), pixel);
 }
 
 }  // namespace anamorph

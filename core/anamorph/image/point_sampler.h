@@ -9,6 +9,7 @@
 
 #include "anamorph/image/filter.h"
 #include "anamorph/image/footprint.h"
+#include "anamorph/image/summed_areas.h"
 #include "anamorph/image/window.h"
 
 namespace anamorph {
@@ -58,7 +59,7 @@ class PointSampler {
 
     const Source& m_source;
     const Border& m_border;
-    const SummedAreas* m_sums = nullptr;
+    SummedLevels m_sums;
     WindowReader m_reader;
     std::vector<float> m_tap;
     std::vector<double> m_sum, m_values, m_mended;

@@ -11,6 +11,7 @@
 #include "anamorph/image/pages.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/summed_areas.h"
+#include "anamorph/image/texel_types.h"
 
 namespace anamorph {
 
@@ -160,6 +161,9 @@ struct Pyramid::Level {
 };
 
 Pyramid::Pyramid(const Source& base, int columns, int rows) : m_base(base) {
+    // Colour that is yet to be multiplied by alpha is filtered as floats.
+    const PixelType filtered = base.unassociated_alpha() < 0 ? base.type() : PixelType::float32;
+    if (!has_loops(filtered)) refuse_texels(filtered);
     if (base.levels() != 1) return;
     const bool pieces = columns > 1 || rows > 1;
     SourceLevel finer = base.level(0);
@@ -221,10 +225,12 @@ bool Pyramid::prepare(int level, const Box& box) const noexcept try {
     return false;
 }
 
-const SummedAreas* Pyramid::summed_areas() const noexcept try {
+const SummedAreas* Pyramid::summed_areas(int level) const noexcept try {
     const std::lock_guard lock(m_summing);
-    if (!m_sums) m_sums = std::make_unique<const SummedAreas>(m_base);
-    return m_sums.get();
+    m_sums.resize(static_cast<std::size_t>(levels()));
+    auto& sums = m_sums[static_cast<std::size_t>(level)];
+    if (!sums) sums = std::make_unique<const SummedAreas>(*this, level);
+    return sums.get();
 } catch (const std::exception&) {
     return nullptr;
 }

@@ -55,7 +55,7 @@ class Pyramid final : public Source {
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int level) const noexcept override;
     bool prepare(int level, const Box& box) const noexcept override;
-    const SummedAreas* summed_areas() const noexcept override;
+    const SummedAreas* summed_areas(int level) const noexcept override;
 
   private:
     struct Level;
@@ -69,7 +69,8 @@ class Pyramid final : public Source {
     const Source& m_base;
     std::vector<std::unique_ptr<Level>> m_made;
     mutable std::mutex m_summing;
-    mutable std::unique_ptr<const SummedAreas> m_sums;
+    mutable std::vector<std::unique_ptr<const SummedAreas>>
+        m_sums;  ///< of each level, where they were asked for
 };
 
 }  // namespace anamorph

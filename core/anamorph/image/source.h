@@ -73,9 +73,12 @@ class Source {
         return true;
     }
 
-    /// The summed-area table of level 0, made when it is first asked for and kept. Null where the source has none, or where
-    /// it could not be made.
-    virtual const SummedAreas* summed_areas() const noexcept { return nullptr; }
+    /// The summed-area tables of a level, made when they are first asked for and kept. Null where the source has none, or where
+    /// they could not be made.
+    virtual const SummedAreas* summed_areas(int level) const noexcept {
+        static_cast<void>(level);
+        return nullptr;
+    }
 };
 
 /// An image in memory, not owned.

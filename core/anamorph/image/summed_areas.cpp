@@ -138,12 +138,12 @@ double stored(const std::byte* channel, PixelType type) {
 }
 
 /// Texels of a box as they are averaged: in double, integers as they are stored, colour multiplied by alpha.
-std::vector<double> values_of(const Source& source, const Box& box) {
+std::vector<double> values_of(const Source& source, int level, const Box& box) {
     const auto channels = static_cast<std::size_t>(source.channels()),
                row = static_cast<std::size_t>(box.width()) * channels;
     const PixelType type = source.type();
     std::vector<std::byte> bytes(row * static_cast<std::size_t>(box.height() * size_of(type)));
-    if (!source.read(0, box, bytes.data(), static_cast<std::ptrdiff_t>(row) * size_of(type)))
+    if (!source.read(level, box, bytes.data(), static_cast<std::ptrdiff_t>(row) * size_of(type)))
         throw Error("a source cannot be read");
     std::vector<double> values(row * static_cast<std::size_t>(box.height()));
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -182,10 +182,11 @@ int tiles_over(int texels) {
 
 }  // namespace
 
-SummedAreas::SummedAreas(const Source& source)
+SummedAreas::SummedAreas(const Source& source, int level)
     : m_source(source),
-      m_size(source.size(0)),
-      m_extent(source.extent(0)),
+      m_level(level),
+      m_size(source.size(level)),
+      m_extent(source.extent(level)),
       m_columns(tiles_over(m_extent.width())),
       m_rows(tiles_over(m_extent.height())),
       m_slots(
@@ -233,7 +234,7 @@ void SummedAreas::forget_some() const noexcept {
 std::shared_ptr<const SummedAreas::Tile> SummedAreas::make_tile(int column, int row) const {
     const int left = m_extent.x0 + column * kTile, top = m_extent.y0 + row * kTile;
     const Box box = intersection(m_extent, {left, top, left + kTile, top + kTile});
-    const std::vector<double> values = values_of(m_source, box);
+    const std::vector<double> values = values_of(m_source, m_level, box);
     const std::size_t channels = m_scales.size();
     auto made = std::make_shared<Tile>();
     made->width = box.width();
@@ -401,6 +402,36 @@ bool SummedAreas::mean_of(std::span<const Part> parts, double area, float* pixel
                                          : static_cast<float>(sums[c].sum * m_scales[c] / area);
     }
     return true;
+}
+
+SummedLevels::SummedLevels(const Source& source) : m_source(source) {
+    const Size base = source.size(0);
+    for (int level = 0; level < source.levels(); ++level) {
+        const Size size = source.size(level);
+        m_levels.push_back({double(size.width) / base.width, double(size.height) / base.height, nullptr});
+    }
+}
+
+const SummedLevels::Level& SummedLevels::level_for(double width, double height) {
+    std::size_t level = 0;
+    // A side that is no number is not long.
+    const auto is_long = [&](const Level& l) {
+        return width * l.scale_x >= kLeastTexels && height * l.scale_y >= kLeastTexels;
+    };
+    while (level + 1 < m_levels.size() && is_long(m_levels[level + 1])) ++level;
+    Level& found = m_levels[level];
+    if (!found.sums) found.sums = m_source.summed_areas(static_cast<int>(level));
+    return found;
+}
+
+bool SummedLevels::mean(double x, double y, double width, double height, Wrap wrap, float* pixel) {
+    const auto& [across, down, sums] = level_for(width, height);
+    return sums && sums->mean(x * across, y * down, width * across, height * down, wrap, pixel);
+}
+
+bool SummedLevels::mean_over_poles(double x, double y, double width, double height, float* pixel) {
+    const auto& [across, down, sums] = level_for(width, height);
+    return sums && sums->mean_over_poles(x * across, y * down, width * across, height * down, pixel);
 }
 
 }  // namespace anamorph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means over rectangles of a source, whatever their size, of all texels (Crow 1984).
+// Means over rectangles of a source, whatever their size, of all texels of a level (Crow 1984).
 //
 // A table holds, for each texel, the sum of all texels above and to the left of it; that over a rectangle of whole texels
 // is S(x1, y1) - S(x0, y1) - S(x1, y0) + S(x0, y0). Each tile of kTile texels either way has a table of its own, which is made when it
@@ -22,7 +22,7 @@
 
 namespace anamorph {
 
-/// The tables of a source's level 0. Thread safe; the same bits for any order of reading.
+/// The tables of a level of a source. Thread safe; the same bits for any order of reading.
 class SummedAreas {
   public:
     static constexpr int kTile = 128;
@@ -30,7 +30,7 @@ class SummedAreas {
     static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
     /// Keeps a reference to the source, of which nothing is read yet. Throws std::bad_alloc.
-    explicit SummedAreas(const Source& source);
+    explicit SummedAreas(const Source& source, int level = 0);
     ~SummedAreas();
     SummedAreas(const SummedAreas&) = delete;
     SummedAreas& operator=(const SummedAreas&) = delete;
@@ -38,7 +38,7 @@ class SummedAreas {
     /// The bytes that tables take now.
     std::size_t bytes() const noexcept { return m_bytes.load(std::memory_order_relaxed); }
 
-    /// Writes the mean over the rectangle of width x height texels about (x, y), in which texels are squares
+    /// Writes the mean over the rectangle of width x height texels of the level about (x, y), in which texels are squares
     /// of one color, to `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample
     /// says. Sides below 1, or that are no number, are 1, so that the smallest rectangle interpolates
     /// bilinearly. Beyond the edges as `wrap`, where automatic is black; beside black, texels beyond the edges of
@@ -69,6 +69,7 @@ class SummedAreas {
              std::span<Sums> sums) const noexcept;
 
     const Source& m_source;
+    int m_level;
     Size m_size;
     Box m_extent;                  ///< the texels that the tables have
     std::vector<double> m_scales;  ///< units of the values, channel by channel
@@ -79,6 +80,36 @@ class SummedAreas {
     mutable std::mutex m_forgetting;
     mutable std::size_t m_hand = 0;  ///< the slot that is next to be forgotten
     mutable std::atomic<std::size_t> m_bytes{0};
+};
+
+/// Means over rectangles of a source by the tables of one of its levels. Each thread needs its own. Keeps a reference to the source.
+///
+/// The level is the coarsest on which the shorter side of a rectangle is kLeastTexels long, else level 0. Texels of it that
+/// the rectangle covers in part count by that part: in one that is covered by a share s the mean of the whole texel stands for that of the
+/// part, which is off by at most 1 - s of the texel's range, so that the sum is off by s (1 - s) <= 1/4 of it. There are at most 2 (m + n)
+/// such texels in a rectangle of m x n, and its mean is off by at most (1/m + 1/n) / 2 <= 1/kLeastTexels of the range of what
+/// a texel at its edge averages, beside the rounding of the level's texels.
+class SummedLevels {
+  public:
+    static constexpr int kLeastTexels = 32;
+
+    explicit SummedLevels(const Source& source);
+
+    /// SummedAreas::mean, all in texels of level 0. False also where the source keeps no tables.
+    bool mean(double x, double y, double width, double height, Wrap wrap, float* pixel);
+    /// SummedAreas::mean_over_poles, all in texels of level 0. False also where the source keeps no tables.
+    bool mean_over_poles(double x, double y, double width, double height, float* pixel);
+
+  private:
+    /// A level, so many texels of which are one of level 0.
+    struct Level {
+        double scale_x, scale_y;
+        const SummedAreas* sums;  ///< null before it is asked for
+    };
+    const Level& level_for(double width, double height);
+
+    const Source& m_source;
+    std::vector<Level> m_levels;
 };
 
 }  // namespace anamorph

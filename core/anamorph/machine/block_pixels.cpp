@@ -114,7 +114,7 @@ bool BlockPixels::draw(const Source* source, const Box& box, const ImageView& vi
     std::optional<Pyramid> lent;
     const SummedAreas* sums = nullptr;
     if (m_filter == Filter::antialias) {
-        if (!(sums = source->summed_areas())) sums = lent.emplace(*source).summed_areas();
+        if (!(sums = source->summed_areas(0))) sums = lent.emplace(*source).summed_areas(0);
         if (!sums) return false;
     }
     const Box whole{0, 0, m_map->width(), m_map->height()};

@@ -2,11 +2,15 @@
 // a b + c, rounded once: one result on every processor. Kernels whose numbers become colours use it in place of Highway's MulAdd,
 // which rounds the product where an instruction set cannot do both at once (tests/core/fused.py looks for that one).
 // Included once for every instruction set, as Highway's own headers are.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
 #include "hwy/highway.h"
+#if HWY_ARCH_WASM
+#include <wasm_simd128.h>
+#endif
 
 #if defined(ANAMORPH_NUMBER_FUSED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ANAMORPH_NUMBER_FUSED_INL_H_
@@ -20,7 +24,50 @@ namespace anamorph::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if !HWY_NATIVE_FMA
+#if HWY_TARGET == HWY_WASM
+/// FusedByOdd below of one number: Highway has no doubles for WebAssembly.
+inline float FusedByOddOfOne(float a, float b, float c) {
+    const double product = double{a} * double{b}, sum = product + double{c};
+    const double of_c = sum - product, rest = (product - (sum - of_c)) + (double{c} - of_c);
+    if (!(std::fabs(rest) > 0)) return static_cast<float>(sum);
+    std::uint64_t bits;
+    std::memcpy(&bits, &sum, sizeof(bits));
+    bits = (bits - std::uint64_t{std::signbit(sum) != std::signbit(rest)}) | 1;
+    double odd;
+    std::memcpy(&odd, &bits, sizeof(odd));
+    return static_cast<float>(odd);
+}
+
+template <class D>
+HWY_NOINLINE hn::Vec<D> FusedByOdd(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c) {
+    HWY_ALIGN float of_a[hn::MaxLanes(d)], of_b[hn::MaxLanes(d)], of_c[hn::MaxLanes(d)];
+    hn::Store(a, d, of_a), hn::Store(b, d, of_b), hn::Store(c, d, of_c);
+    for (std::size_t i = 0; i < hn::MaxLanes(d); ++i) of_a[i] = FusedByOddOfOne(of_a[i], of_b[i], of_c[i]);
+    return hn::Load(d, of_a);
+}
+
+/// Fused below of four floats, with the test of MayBeRoundedTwice, in WebAssembly's own words.
+template <class D>
+HWY_INLINE hn::Vec<D> FusedByWasm(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c) {
+    const auto sum_of_low = [](v128_t p, v128_t q, v128_t r) {
+        return wasm_f64x2_add(
+            wasm_f64x2_mul(wasm_f64x2_promote_low_f32x4(p), wasm_f64x2_promote_low_f32x4(q)),
+            wasm_f64x2_promote_low_f32x4(r));
+    };
+    const auto upper = [](v128_t v) { return wasm_i64x2_shuffle(v, v, 1, 1); };
+    const v128_t low = sum_of_low(a.raw, b.raw, c.raw),
+                 high = sum_of_low(upper(a.raw), upper(b.raw), upper(c.raw));
+    const v128_t rounded =
+        wasm_i64x2_shuffle(wasm_f32x4_demote_f64x2_zero(low), wasm_f32x4_demote_f64x2_zero(high), 0, 2);
+    const v128_t low_bits = wasm_i32x4_shuffle(low, high, 0, 2, 4, 6);
+    const v128_t middle =
+        wasm_i32x4_eq(wasm_v128_and(low_bits, wasm_i32x4_splat(0x1fffffff)), wasm_i32x4_splat(0x10000000));
+    const v128_t twice = wasm_i32x4_sub(wasm_i32x4_shl(rounded, 1), wasm_i32x4_splat(1));
+    const v128_t denormal = wasm_u32x4_lt(twice, wasm_i32x4_splat(0x00ffffff));
+    if (HWY_UNLIKELY(wasm_v128_any_true(wasm_v128_or(middle, denormal)))) return FusedByOdd(d, a, b, c);
+    return hn::Vec<D>{rounded};
+}
+#elif !HWY_NATIVE_FMA
 /// Products of floats, exact in double (24 by 24 bits), and their sums with c, rounded.
 template <class D>
 struct SumsInDouble {
@@ -104,7 +151,9 @@ HWY_INLINE V Fused(V a, V b, V c) {
 #else
     const hn::DFromV<V> d;
     static_assert(sizeof(hn::TFromV<V>) == sizeof(float));
-#if HWY_TARGET == HWY_SCALAR
+#if HWY_TARGET == HWY_WASM
+    return FusedByWasm(d, a, b, c);
+#elif HWY_TARGET == HWY_SCALAR
     const SumsInDouble<decltype(d)> sums(a, b, c);
     const V rounded = NearestFloats(d, sums.sum);
     std::int64_t bits;

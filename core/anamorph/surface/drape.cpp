@@ -529,7 +529,7 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
     std::deque<Pyramid> lent;
     if (m_options.filter == Filter::summed_area)
         for (const Source** s : {&source, &backdrop, &back})
-            if (*s && !(*s)->summed_areas()) *s = &lent.emplace_back(**s);
+            if (*s && !(*s)->summed_areas(0)) *s = &lent.emplace_back(**s);
     const int straight = source->unassociated_alpha();
     const Layers layers{*source, back, backdrop, {straight >= 0 ? straight : m_options.alpha, straight < 0}};
     Picture picture = m_picture;

@@ -26,14 +26,16 @@ glm::dvec4 color_of_texel(const std::vector<float>& texel) {
 BodyTexture::BodyTexture(const Source& source, BodyMapping mapping, Filter filter, TextureAverage average)
     : m_source(source),
       m_average(average),
-      m_sums(average == TextureAverage::summed_area && averages(filter) ? source.summed_areas() : nullptr),
       m_mapping(mapping),
       m_filter(filter),
       m_border(texture_border(source, mapping)),
       m_chooser(source),
       m_sampler(source, m_border),
       m_pixel(static_cast<std::size_t>(source.channels())),
-      m_coarser(m_pixel.size()) {}
+      m_coarser(m_pixel.size()) {
+    if (average == TextureAverage::summed_area && averages(filter) && source.summed_areas(0))
+        m_sums.emplace(source);
+}
 
 glm::dvec3 BodyTexture::color(const TexturedSurface& body, double x, double y, bool far_side,
                               const glm::dvec3& below) {

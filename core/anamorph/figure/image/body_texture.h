@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "anamorph/figure/body/body_mapping.h"
@@ -56,7 +57,7 @@ class BodyTexture {
 
     const Source& m_source;
     TextureAverage m_average;
-    const SummedAreas* m_sums;
+    std::optional<SummedLevels> m_sums;
     BodyMapping m_mapping;
     Filter m_filter;
     Border m_border;
