@@ -109,7 +109,7 @@ std::string svg_of(const Drawing& drawing) {
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"",
         width, "\" height=\"", height, "\" viewBox=\"0 0 ", width, " ", height, "\"");
     // Rounded up.
-    if (drawing.simple_error > 0) add(text, " data-error=\"", drawing.simple_error + 1e-4, "\"");
+    if (drawing.simple) add(text, " data-error=\"", drawing.max_error + 1e-4, "\"");
     add(text, ">\n<title>frame ", std::to_string(drawing.frame),
         "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g fill=\"none\" "
         "stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"",

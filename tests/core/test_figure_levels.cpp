@@ -154,7 +154,7 @@ TEST(FigureLevels, AFigureIsADotSticksBoxesAndContoursByItsSize) {
         std::size_t points = 0;
         for (const Stroke& stroke : drawing.strokes) points += stroke.points.size();
         EXPECT_GE(points, before) << scale;
-        EXPECT_LE(drawing.simple_error, 1);
+        EXPECT_LE(drawing.max_error, 1);
         before = points;
         levels.push_back(figure_levels(frame, view, 1)[0]);
         if (levels.back() == FigureLevel::dot) {
@@ -176,7 +176,7 @@ TEST(FigureLevels, AFigureIsADotSticksBoxesAndContoursByItsSize) {
 }
 
 TEST(FigureLevels, ADotIsOffByWhatIsApartFromIt) {
-    // Two specks, of which the dot stands where the first one is.
+    // Two specks, between which the dot stands.
     View view;
     view.scale = 2;
     const auto dot_or_not = [&](double distance) {
@@ -185,9 +185,57 @@ TEST(FigureLevels, ADotIsOffByWhatIsApartFromIt) {
         other.center.x = distance;
         return figure_levels(frame_of({speck, other}), view, 1)[0] == FigureLevel::dot;
     };
-    EXPECT_TRUE(dot_or_not(0.39));
-    EXPECT_FALSE(dot_or_not(0.41));
+    EXPECT_TRUE(dot_or_not(0.79));
+    EXPECT_FALSE(dot_or_not(0.81));
     EXPECT_FALSE(dot_or_not(20));
+}
+
+TEST(FigureLevels, WhatADrawingSaysHoldsItsToleranceChordsIncluded) {
+    SceneMaker make(17);
+    const FigureFrame frame = frame_of(make.scene(7, 20, 60, 3, HUGE_VAL).bodies);
+    View view;
+    view.middle = {400, 300};
+    for (const OutlineStyle style : {OutlineStyle::levels, OutlineStyle::contours})
+        for (const double tol : {0.001, 0.01, 0.05, 0.5, 5.0}) {
+            DrawingOptions options;
+            options.style = style;
+            options.simple_tol = tol;
+            const Drawing drawing = draw(frame, view, {800, 600}, options);
+            EXPECT_LE(drawing.max_error, tol);
+            EXPECT_GT(drawing.max_error, 0);
+            EXPECT_TRUE(drawing.simple);
+        }
+}
+
+TEST(FigureLevels, ADotSaysHowFarItIsFromWhatItStandsFor) {
+    SceneMaker make(19);
+    const FigureFrame frame = frame_of(make.scene(9, 20, 60, 3, HUGE_VAL).bodies);
+    View view;
+    view.middle = {400, 300};
+    DrawingOptions options;
+    options.style = OutlineStyle::levels;
+    options.simple_tol = 1e5;
+    const Drawing drawing = draw(frame, view, {800, 600}, options);
+    ASSERT_EQ(drawing.strokes.size(), 1u);
+    const glm::dvec2 dot = drawing.strokes[0].points.at(0);
+    // The farthest point of the bodies' surfaces, and how far they reach to each side.
+    double farthest = 0;
+    glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const Body& body : frame.bodies)
+        for (int i = 0; i <= 180; ++i)
+            for (int j = 0; j < 360; ++j) {
+                const double a = i * std::numbers::pi / 180, b = j * std::numbers::pi / 180;
+                const glm::dvec3 unit(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
+                const glm::dvec2 at =
+                    view.project(body.shape.center + body.shape.rotation * (body.shape.axes * unit));
+                const glm::dvec2 on_page(at.x, 600 - at.y);
+                farthest = std::max(farthest, glm::length(on_page - dot));
+                low = glm::min(low, on_page), high = glm::max(high, on_page);
+            }
+    EXPECT_LE(farthest, drawing.max_error + 1e-3);
+    EXPECT_GE(farthest, 0.8 * drawing.max_error);
+    // In the middle, give or take how much rounder discs are than the bodies.
+    EXPECT_LT(glm::length(dot - 0.5 * (low + high)), 40);
 }
 
 TEST(FigureLevels, FarSidesOfBoxesAndContoursAreHidden) {

@@ -195,6 +195,12 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
     for (const char* key : {"solid", "bump"})
         EXPECT_THAT(error_of({{"style", "depth"}, {key, "wood"}}),
                     HasSubstr("is of styles shaded and textured alone"));
+    for (const char* style : {"depth", "outline", "stick"})
+        EXPECT_THAT(error_of({{"style", style}, {"perturbation", "0.1"}}),
+                    HasSubstr("perturbation=0.1: is of styles shaded and textured alone"));
+    EXPECT_THAT(error_of({{"seed", "5"}}), HasSubstr("seed=5: must be given with perturbation"));
+    EXPECT_THAT(error_of({{"solid", "formula"}}),
+                HasSubstr("solid=formula: must be given with red, green or blue"));
     EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5"}, {"style", "outline"}}),
                 HasSubstr("viewport=0.5,0.5,0.5: must be x,y,a,b"));
     EXPECT_THAT(error_of({{"viewport", "0.5,0.5,0.5,0"}, {"style", "stick"}}), HasSubstr("from 1e-04 to 10"));
@@ -282,6 +288,24 @@ class Numbered final : public Source {
         return true;
     }
 };
+
+TEST(FigureOperation, MapsOfMraselThatAreMissingAreNamed) {
+    Texts texts;
+    texts.files["a/doll.n"] = "figure f 1 e\nellipsoid e 1 2 3\nrepeat 0 1 texture e face 0 0\nstop\n";
+    for (int side = 512; side > 0; side /= 2) texts.files["a/face." + std::to_string(side)] = "";
+    const Operation& operation = *find_operation("figure");
+    ParameterValues values(*operation.parameters);
+    values.assign({{"style", "textured"}});
+    const SideFiles files = {{"script", {"a/doll.n", ""}}};
+    EXPECT_EQ(operation.linked(values, files, texts).size(), 10u);
+    texts.files.erase("a/face.64");
+    try {
+        operation.linked(values, files, texts);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "face.64 does not exist: must be beside face.512, as MTEXTURE writes it");
+    }
+}
 
 TEST(FigureOperation, MipsShowThePyramid) {
     class Images final : public SideFileReader {

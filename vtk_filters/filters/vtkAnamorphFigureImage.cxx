@@ -359,7 +359,7 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
         each_pixel([&](vtkIdType i, const float* from) { write_color(from, to + 4 * i); });
     }
     if (this->Style != OUTLINE) return;
-    anamorph_vtk::add_field({"anamorph:max_error", picture.simple_error() + look.lines.tol}, image);
+    anamorph_vtk::add_field({"anamorph:max_error", picture.line_error()}, image);
     std::string left_out;
     for (const std::string& name : picture.left_out()) left_out += (left_out.empty() ? "" : ", ") + name;
     if (!left_out.empty()) anamorph_vtk::add_field({"anamorph:left_out", left_out}, image);

@@ -159,8 +159,9 @@ ParameterTable line_rows() {
     return {
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
         numbers("viewport", -kInfinity,
-                "of styles outline and stick: x,y,a,b: the middle, from the upper left, and the half-axes of "
-                "an ellipse in shares of the picture's width and height; lines end at it"),
+                "of styles outline and stick: x,y,a,b: the middle, from the upper left, each from -10 to 10, "
+                "and the half-axes, from 0.0001 to 10, of an ellipse in shares of the picture's width and "
+                "height; lines end at it"),
         enumeration(
             "mapping", "latlong",
             {{"latlong", figure::BodyMapping::latlong},
@@ -265,6 +266,10 @@ void add_texture(LinkedFiles& linked, const std::string& script, const std::stri
     }
     for (int level = 0; level < figure::kMraselMaps; ++level) {
         const std::string file = figure::mrasel_map_file(name, figure::MraselMaps::side(level));
+        if (!reader.exists(beside(script, file)))
+            throw Error(printable(file) + " does not exist: must be beside " +
+                        printable(figure::mrasel_map_file(name, figure::kMraselSide)) +
+                        ", as MTEXTURE writes it");
         linked.push_back({kMapKey + file, beside(script, file)});
     }
 }
@@ -453,11 +458,21 @@ FigureRequest read_request(const ParameterValues& values) {
     look.antialias = values.toggle("antialias");
     look.perturbation = values.number("perturbation");
     look.seed = values.whole("seed");
+    const bool shaded =
+        look.style == figure::FigureStyle::shaded || look.style == figure::FigureStyle::textured;
+    if (!shaded && values.given("perturbation"))
+        throw Error("perturbation", printable(values.text("perturbation")),
+                    "is of styles shaded and textured alone");
+    if (!values.given("perturbation") && values.given("seed"))
+        throw Error("seed", printable(values.text("seed")), "must be given with perturbation");
     read_background(values, look);
     look.mapping = rows::chosen<figure::BodyMapping>(values, "mapping");
     read_filter(values, look);
     look.backdrop = values.given("backdrop");
     read_figure_relief(values, values.given("bump"), look);
+    if (values.text("solid") == "formula" && !values.given("red") && !values.given("green") &&
+        !values.given("blue"))
+        throw Error("solid", "formula", "must be given with red, green or blue");
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
@@ -480,7 +495,7 @@ class SolvedFigure final : public SolvedPicture {
     /// Rays meet the bodies themselves; only curved lines are made of chords.
     Attributes reached(const ParallelFor&) const override {
         const bool chords = m_style == figure::FigureStyle::outline;
-        Attributes all = {{"anamorph:max_error", chords ? m_picture.simple_error() + kChordError : 0.0},
+        Attributes all = {{"anamorph:max_error", chords ? m_picture.line_error() : 0.0},
                           {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
         std::string names;
         for (const std::string& name : m_picture.left_out()) names += (names.empty() ? "" : ", ") + name;
@@ -567,8 +582,7 @@ class Figures final : public Pictures {
         const figure::DrawingOptions& lines = m_request.look.lines;
         const bool holds = figure::holds_tolerance(lines.style);
         if (lines.style == figure::OutlineStyle::limbs || holds)
-            picture.says.push_back(
-                {"anamorph:tol", chords ? kChordError + (holds ? lines.simple_tol : 0) : 0.0});
+            picture.says.push_back({"anamorph:tol", !chords ? 0.0 : holds ? lines.simple_tol : kChordError});
         picture.says.push_back({"anamorph:frame", number});
         if (!m_request.missing.empty())
             picture.says.push_back({"anamorph:missing_textures", m_request.missing});

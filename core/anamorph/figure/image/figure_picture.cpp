@@ -133,7 +133,7 @@ struct FigurePicture::Impl {
     std::vector<glm::dmat3> slopes = {};
     std::unique_ptr<const VisibleSurfaces> surfaces = {};
     std::unique_ptr<const StrokePixels> strokes = {};
-    double simple_error = 0;
+    double line_error = 0;
     std::vector<int> left_out = {};
 
     /// Towards the eye, from what is seen at (x, y).
@@ -286,7 +286,7 @@ FigurePicture::FigurePicture(FigureFrame frame, const View& view, const Size& si
     }
     if (is_lines(look.style)) {
         Drawing lines = drawing_of(own, view, size, look, parallel_for);
-        impl->simple_error = lines.simple_error;
+        impl->line_error = lines.max_error;
         impl->left_out = lines.left_out;
         impl->strokes = std::make_unique<const StrokePixels>(std::move(lines));
     } else
@@ -295,8 +295,8 @@ FigurePicture::FigurePicture(FigureFrame frame, const View& view, const Size& si
     m_impl = std::move(impl);
 }
 
-double FigurePicture::simple_error() const {
-    return m_impl->simple_error;
+double FigurePicture::line_error() const {
+    return m_impl->line_error;
 }
 
 std::vector<std::string> FigurePicture::left_out() const {

@@ -84,8 +84,8 @@ class FigurePicture {
     void draw(const Box& box, const ImageView& pixels, const ParallelFor& parallel_for = serial_for,
               const std::vector<const Source*>& textures = {}) const;
 
-    /// How far the lines of the style outline may be from bodies' outlines, but for chords: pixels (Drawing::simple_error).
-    double simple_error() const;
+    /// How far the lines of the style outline are from bodies' outlines, at most; pixels (Drawing::max_error).
+    double line_error() const;
     /// The names of bodies that the lines do not show (Drawing::left_out).
     std::vector<std::string> left_out() const;
 

@@ -94,6 +94,10 @@ class Page {
         m_drawing.size = size;
         m_drawing.line_width = options.line_width;
         m_drawing.halo = options.halo;
+        m_drawing.simple = options.style != OutlineStyle::limbs;
+        // Chords take a part of what lines may be off.
+        if (holds_tolerance(options.style)) m_options.tol = std::min(options.tol, options.simple_tol / 4);
+        m_drawing.max_error = m_options.tol;
         for (const Body& body : frame.bodies) m_shapes.push_back(body.shape);
     }
 
@@ -197,23 +201,22 @@ class Page {
 
     /// What is infinite is left out or drawn whole.
     void count_error(double error) {
-        if (error < HUGE_VAL) m_drawing.simple_error = std::max(m_drawing.simple_error, error);
+        if (error < HUGE_VAL) m_drawing.max_error = std::max(m_drawing.max_error, error + m_options.tol);
     }
 
     /// Draws bodies by the level of their figure, or by one for all.
     void draw_simple(const std::vector<Outline>& all, const ParallelFor& parallel_for) {
+        const double most = m_options.simple_tol - m_options.tol;
         std::vector<FigureLevel> levels(
             std::max<std::size_t>(m_frame.figures.size(), 1),
             m_options.style == OutlineStyle::boxes ? FigureLevel::boxes : FigureLevel::contours);
-        if (m_options.style == OutlineStyle::levels)
-            levels = figure_levels(m_frame, m_view, m_options.simple_tol);
-        std::vector<int> first(levels.size(), -1);
+        if (m_options.style == OutlineStyle::levels) levels = figure_levels(m_frame, m_view, most);
         std::vector<bool> has_dot(levels.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
             const auto figure =
                 std::min(static_cast<std::size_t>(m_frame.bodies[i].figure), levels.size() - 1);
             const Ellipsoid& body = m_shapes[i];
-            const int contours = contours_for(body, m_view, m_options.simple_tol);
+            const int contours = contours_for(body, m_view, most);
             const FigureLevel level = levels[figure];
             // A body that is a point is there nevertheless.
             if (level != FigureLevel::dot && dot_error(body, m_view) <= kLeastExtent) {
@@ -221,13 +224,12 @@ class Page {
                 continue;
             }
             if (level == FigureLevel::dot) {
-                // Where the figure's first body is, if anything of the figure is seen.
-                if (first[figure] < 0) first[figure] = static_cast<int>(i);
+                // Of the first body that is seen.
                 if (has_dot[figure] || all[i].visible.empty()) continue;
                 has_dot[figure] = true;
-                const auto f = static_cast<std::size_t>(first[figure]);
-                add_dot(f, on_page(m_view.project(m_shapes[f].center)), m_view.to_view(m_shapes[f].center).z);
-                count_error(m_options.simple_tol);
+                const FigureDot dot = figure_dot(m_frame, m_view, figure);
+                add_dot(i, on_page(dot.at), m_view.to_view(body.center).z);
+                count_error(dot.error);
             } else if (level == FigureLevel::sticks) {
                 draw_shape(i, {axis_line(body)}, {static_cast<int>(i)}, parallel_for);
                 count_error(stick_error(body, m_view));
@@ -383,7 +385,7 @@ class Page {
     glm::dvec2 on_page(const glm::dvec2& screen) const { return {screen.x, m_drawing.size.y - screen.y}; }
 
     const FigureFrame& m_frame;
-    const DrawingOptions& m_options;
+    DrawingOptions m_options;
     const View& m_view;
     ScreenWindow m_box;
     std::vector<Ellipsoid> m_shapes;

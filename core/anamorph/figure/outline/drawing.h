@@ -41,10 +41,10 @@ struct DrawingOptions {
     Sticks sticks = Sticks::none;
     OutlineStyle style = OutlineStyle::limbs;  ///< fewer lines than outlines, with an error that is stated
     double simple_tol =
-        kSimpleTolRow.standard;               ///< of levels and contours: how far they may be off, in pixels
-    bool crossings = false;                   ///< also the curves in which bodies pass through each other
+        kSimpleTolRow.standard;  ///< of levels and contours: how far they may be off, chords included; pixels
+    bool crossings = false;      ///< also the curves in which bodies pass through each other
     double lod = kLevelOfDetailRow.standard;  ///< bodies no wider are dots and lines; pixels
-    double tol = kDrawingTolRow.standard;     ///< maximum chord error; pixels
+    double tol = kDrawingTolRow.standard;  ///< maximum chord error, of simple_tol a quarter at most; pixels
     double line_width = kLineWidthRow.standard;  ///< pixels
     double halo = kHaloRow.standard;             ///< the gap on either side of a nearer line, in pixels
     bool colors = false;                         ///< lines have the colors of the bodies; else black
@@ -73,8 +73,9 @@ struct Drawing {
     int frame = 0;
     glm::dvec2 size{0.0};  ///< size of the page, in pixels
     double line_width = 1, halo = 0;
-    /// How far outlines of what stands for bodies may be from the bodies' own, at most: pixels; 0 where they are these.
-    double simple_error = 0;
+    bool simple = false;  ///< are there lines that stand for bodies' outlines?
+    /// How far lines are from bodies' outlines, at most, be they these or what stands for them, chords included; pixels.
+    double max_error = 0;
     std::vector<int>
         left_out;  ///< bodies that Willmert's cylinders do not show, as they reach before View::near
     std::vector<Stroke> strokes;  ///< fills, then hidden strokes, then the others; each from far to near

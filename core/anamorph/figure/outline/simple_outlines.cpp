@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <limits>
@@ -140,29 +141,45 @@ std::vector<ShapeLine> contour_lines(const Ellipsoid& body, const View& view, in
     return lines;
 }
 
+FigureDot figure_dot(const FigureFrame& frame, const View& view, std::size_t figure) {
+    struct Disc {
+        glm::dvec2 center;
+        double radius;
+    };
+    std::vector<Disc> discs;
+    glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const Body& body : frame.bodies) {
+        if (static_cast<std::size_t>(body.figure) != figure) continue;
+        const double radius = dot_error(body.shape, view);
+        if (!(radius < HUGE_VAL)) return {{}, HUGE_VAL};
+        discs.push_back({view.project(body.shape.center), radius});
+        low = glm::min(low, discs.back().center - radius);
+        high = glm::max(high, discs.back().center + radius);
+    }
+    if (discs.empty()) return {};
+    FigureDot dot{0.5 * (low + high), 0};
+    for (const Disc& disc : discs)
+        dot.error = std::max(dot.error, glm::length(disc.center - dot.at) + disc.radius);
+    return dot;
+}
+
 std::vector<FigureLevel> figure_levels(const FigureFrame& frame, const View& view, double most) {
     std::vector<FigureLevel> levels;
     const auto figures = std::max<std::size_t>(frame.figures.size(), 1);
     for (std::size_t f = 0; f < figures; ++f) {
-        double dot = 0, sticks = 0, boxes = 0;
-        std::optional<glm::dvec2> first;
+        double sticks = 0, boxes = 0;
         bool fine = true;
         for (const Body& body : frame.bodies) {
             if (static_cast<std::size_t>(body.figure) != f) continue;
-            const double size = dot_error(body.shape, view);
-            // The dot stands where the first body's centre is seen.
-            const glm::dvec2 at = size < HUGE_VAL ? view.project(body.shape.center) : glm::dvec2(0.0);
-            if (!first) first = at;
-            dot = std::max(dot, glm::length(at - *first) + size);
             sticks = std::max(sticks, stick_error(body.shape, view));
             boxes = std::max(boxes, box_error(body.shape, view));
             fine = fine && contours_for(body.shape, view, most) > 0;
         }
-        levels.push_back(dot <= most      ? FigureLevel::dot
-                         : sticks <= most ? FigureLevel::sticks
-                         : boxes <= most  ? FigureLevel::boxes
-                         : fine           ? FigureLevel::contours
-                                          : FigureLevel::limbs);
+        levels.push_back(figure_dot(frame, view, f).error <= most ? FigureLevel::dot
+                         : sticks <= most                         ? FigureLevel::sticks
+                         : boxes <= most                          ? FigureLevel::boxes
+                         : fine                                   ? FigureLevel::contours
+                                                                  : FigureLevel::limbs);
     }
     return levels;
 }

@@ -13,7 +13,9 @@
 //   centre, a dot                all of |w|
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <utility>
 #include <vector>
@@ -53,8 +55,15 @@ std::vector<ShapeLine> box_lines(const Ellipsoid& body, const View& view);
 /// Chords of a body's contours, ellipses across its longest axis, which lie outside of the body; `tol`: of chords, in pixels.
 std::vector<ShapeLine> contour_lines(const Ellipsoid& body, const View& view, int contours, double tol);
 
-/// The level of each figure of a frame: the least one whose bodies are all off by at most `most` pixels. A dot stands for all of a
-/// figure.
+/// A dot that stands for all of a figure: in the middle of what its bodies cover on the screen, and how far from it these reach, in
+/// pixels; infinite as dot_error() is.
+struct FigureDot {
+    glm::dvec2 at{0.0};
+    double error = 0;
+};
+FigureDot figure_dot(const FigureFrame& frame, const View& view, std::size_t figure);
+
+/// The level of each figure of a frame: the least one whose bodies are all off by at most `most` pixels.
 std::vector<FigureLevel> figure_levels(const FigureFrame& frame, const View& view, double most);
 
 /// A polyline on the screen, and the body that it belongs to.
