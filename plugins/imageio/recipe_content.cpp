@@ -248,8 +248,12 @@ class RecipeContent final : public Content {
         Level& l = this->level(subimage, level);
         std::call_once(l.once, [&] {
             l.spec = l.header;
-            // What a film of many frames reached is not known without solving them all.
-            if (l.solved) say_reached(*l.solved, l.spec);
+            // What a frame of a film reached is not known without solving it.
+            const bool is_asked = m_says_reached.value_or(false);
+            if (const std::shared_ptr<Solved> solved = is_asked && !l.solved ? solve(l) : l.solved)
+                say_reached(*solved, l.spec);
+            else if (m_says_reached)
+                say_not_computed(l.spec);
             if (const std::string keys = first_parts(); !keys.empty())
                 l.spec.attribute("anamorph:first_part", keys);
             if (m_says_hash && level == 0) l.spec.attribute("anamorph:hash", hash_of(subimage));
@@ -309,7 +313,10 @@ class RecipeContent final : public Content {
         if (!solved.picture().reached_by_drawing() || m_says_reached.value_or(false))
             return add_attributes(spec, solved.reached());
         add_attributes(spec, solved.picture().known());
-        if (m_says_reached) spec.attribute("anamorph:not_computed", "max_error: reached=1 computes it");
+        if (m_says_reached) say_not_computed(spec);
+    }
+    static void say_not_computed(ImageSpec& spec) {
+        spec.attribute("anamorph:not_computed", "max_error: reached=1 computes it");
     }
 
     /// Draws channels of several types: in float, and then each in its own.

@@ -82,6 +82,47 @@ TEST(BlockMachine, UnitsShareSegments) {
     EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.pixel_cycles, 64 * 64);
 }
 
+/// On an affine plane addresses are off by rounding alone: by half a unit for each number that docs/machines.md counts, of which what is
+/// repeated adds up both across and down.
+TEST(BlockMachine, AddressesAreOffByTheHalfUnitsOfTheirSums) {
+    constexpr int kSide = 256;
+    constexpr double kUnit = 0x1p-8;
+    // Blocks of 8 texels are 7.6 pixels across and down, so that 4 pixels reach their borders, and one segment beyond.
+    constexpr double kScale = 0.8, kTurn = 0.2;
+    const double c = std::cos(kTurn), s = std::sin(kTurn);
+    glm::dmat3 turn(1.0);
+    turn[0] = {kScale * c, kScale * s, 0};
+    turn[1] = {-kScale * s, kScale * c, 0};
+    const Camera camera(parallel_pose(), turn, glm::dvec3(0.0), {kSide, kSide});
+    struct Bound {
+        Addressing addresses;
+        double most;
+    };
+    for (const auto& [addresses, most] : {Bound{Addressing::direct, 1.5}, Bound{Addressing::segments, 3.5},
+                                          Bound{Addressing::repeated, 4.5}}) {
+        BlockMachine machine;
+        machine.fraction_bits = 8;
+        machine.overlap = 0;
+        machine.addresses = addresses;
+        const BlockFrame frame =
+            MachineBlocks(machine, surface_called("plane"), camera, {kSide, kSide}).draw_all(serial_for);
+        double worst = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const std::size_t at = frame.index(x, y);
+                if (frame.block[at] == BlockFrame::kNone) continue;
+                // The turn and the scale undone, about the middle; y is up in space, and down on the screen and in the picture.
+                const double dx = (x + 0.5 - kSide / 2) / kScale, up = (kSide / 2 - y - 0.5) / kScale;
+                const double u = kSide / 2 + c * dx + s * up, v = kSide / 2 - (c * up - s * dx);
+                worst = std::max({worst, std::fabs(frame.addresses[at].x - u) / kUnit,
+                                  std::fabs(frame.addresses[at].y - v) / kUnit});
+            }
+        // The block's map in floats adds less than a twentieth of a unit.
+        EXPECT_LT(worst, most + 0.05) << static_cast<int>(addresses);
+        EXPECT_GT(worst, most / 2) << static_cast<int>(addresses);
+    }
+}
+
 /// Smaller segments: (d / s)^2 for each block where they divide it.
 TEST(BlockMachine, SegmentsDivideBlocks) {
     BlockMachine machine;
@@ -722,6 +763,22 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
               "machine=ps20: must be oka-1987, oka-1987:key=value,key=value or an object of JSON, {...}");
     EXPECT_EQ(message({{"machine", "oka-1987:processors=0"}}),
               "machine: processors=0: must be an integer from 1 to 4096");
+    // What would mean nothing is not kept in silence.
+    EXPECT_EQ(message({{"machine", "oka-1987:fraction_bits=22"}}), "");
+    for (const char* bits : {"23", "24"})
+        EXPECT_EQ(message({{"machine", std::string("oka-1987:fraction_bits=") + bits}}),
+                  std::string("machine: fraction_bits=") + bits +
+                      ": must be at most 22 with address_bits=24, as an address has a sign and whole texels");
+    for (const char* scheme : {"auto", "exact", "hardware"})
+        for (const char* key : {"block", "overlap"})
+            EXPECT_EQ(message({{"scheme", scheme}, {key, "4"}}),
+                      key + std::string("=4: must be given with scheme=oka or oka-z only"));
+    for (const char* scheme : {"auto", "exact", "oka", "oka-z"})
+        EXPECT_EQ(message({{"scheme", scheme}, {"machine", "oka-1987"}}),
+                  "machine=oka-1987: must be given with scheme=hardware only");
+    for (const char* count : {"0", "1"})
+        EXPECT_EQ(message({{"holes", count}}),
+                  std::string("holes=") + count + ": must not be given with scheme=hardware");
 }
 
 }  // namespace

@@ -324,6 +324,8 @@ TEST(MorphUnit, WhatItCannotDoIsSaid) {
     EXPECT_EQ(refusal_of({{"machine", "ps20"}}),
               "machine=ps20: must be kim-2003, kim-2003:key=value,key=value or an object of JSON, {...}");
     EXPECT_EQ(refusal_of({{"scheme", "auto"}, {"machine", "new"}}).substr(0, 12), "machine=new:");
+    EXPECT_EQ(refusal_of({{"scheme", "auto"}, {"machine", "kim-2003"}}),
+              "machine=kim-2003: must be given with scheme=hardware only");
 }
 
 }  // namespace

@@ -48,6 +48,12 @@ void open_and_read(const std::string& name) {
         << name << ": " << input->geterror();
 }
 
+TEST_F(BadInput, MachinesOfOtherSchemes) {
+    for (const char* scheme : {"", "scheme=exact&"})
+        expect_refused(std::string("to=rectilinear&") + scheme + "machine=embm-2003", "machine=embm-2003",
+                       "must be given with scheme=hardware only");
+}
+
 TEST_F(BadInput, ProjectionsThatAreText) {
     for (const char* key :
          {"ray_x=px", "ray_y=py", "ray_z=1", "point_x=lon", "point_y=lat", "let=k=1", "frame=1"})

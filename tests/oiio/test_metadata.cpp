@@ -529,6 +529,70 @@ TEST_F(Metadata, WhatTakesDrawingIsSaidOnRequest) {
     EXPECT_THAT(open_error("city.exr.drape?reached=2"), HasSubstr("reached=2: must be 0 or 1"));
 }
 
+TEST_F(Metadata, MachinesSayTheirErrorOnRequest) {
+    const ImageBuf city("city.exr");
+    write_text("machine.json", R"({"columns": 1, "rows": 1, "units": "fractions",
+        "vertices": [[0, 0], [1, 0.1], [0.1, 1], [0.9, 0.9]]})");
+    write_text("machine_lines.json", R"({"sizes": [[40, 40], [40, 40]],
+        "features": [{"line": [[10, 10, 30, 12], [12, 14, 28, 10]]}]})");
+    struct Case {
+        std::string operation, keys, known;
+        std::vector<const ImageBuf*> sources;
+        OIIO::ParamValueList options;
+    };
+    const Case cases[] = {
+        {"pano",
+         "from=cylindrical&fov=60&size=40&machine=embm-2003:size=0",
+         "anamorph:saturated_texels",
+         {&city},
+         options({{"from", "cylindrical"}, {"fov", "60"}, {"size", "40"}, {"machine", "embm-2003:size=0"}})},
+        {"warp", "mesh=machine.json", "", {&city}, options({{"mesh", "machine.json"}})},
+        {"morph",
+         "b=city.exr&features=machine_lines.json",
+         "anamorph:evaluations",
+         {&city, &city},
+         options({{"features", "machine_lines.json"}})},
+    };
+    for (Case one : cases) {
+        const std::string name = "city.exr." + one.operation + "?scheme=hardware&" + one.keys;
+        const ImageSpec opened = spec_of(name), asked = spec_of(name + "&reached=1");
+        EXPECT_EQ(opened.find_attribute("anamorph:max_error"), nullptr) << name;
+        EXPECT_EQ(opened.get_string_attribute("anamorph:not_computed"), "max_error: reached=1 computes it")
+            << name;
+        EXPECT_EQ(asked.find_attribute("anamorph:not_computed"), nullptr) << name;
+        one.options.attribute("scheme", "hardware");
+        const ImageBuf drawn = apply(one.operation, one.sources, one.options);
+        for (const char* number :
+             {"anamorph:max_error", "anamorph:exact_fraction", "anamorph:saturated_pixels"}) {
+            EXPECT_GE(asked.get_float_attribute(number, -1), 0) << name;
+            EXPECT_EQ(asked.get_float_attribute(number, -1), drawn.spec().get_float_attribute(number, -2))
+                << name;
+        }
+        // What is counted before anything is drawn is always said.
+        if (!one.known.empty()) {
+            const OIIO::ParamValue *before = opened.find_attribute(one.known),
+                                   *after = asked.find_attribute(one.known);
+            ASSERT_TRUE(before && after) << name;
+            EXPECT_EQ(before->get_string(), after->get_string()) << name;
+        }
+        EXPECT_EQ(spec_of("city.exr." + one.operation + "?" + one.keys.substr(0, one.keys.find("&machine")))
+                      .find_attribute("anamorph:not_computed"),
+                  nullptr)
+            << name;
+    }
+}
+
+TEST_F(Metadata, FramesOfFilmsSayWhatTheyReachedOnRequest) {
+    const std::string film = "city.exr.morph?b=city.exr&features=machine_lines.json&size=20&frames=3";
+    write_text("machine_lines.json", R"({"sizes": [[40, 40], [40, 40]],
+        "features": [{"line": [[10, 10, 30, 12], [12, 14, 28, 10]]}]})");
+    const ImageSpec opened = spec_of(film), asked = spec_of(film + "&reached=1");
+    EXPECT_EQ(opened.find_attribute("anamorph:max_error"), nullptr);
+    EXPECT_EQ(opened.get_string_attribute("anamorph:not_computed"), "max_error: reached=1 computes it");
+    EXPECT_GE(asked.get_float_attribute("anamorph:max_error", -1), 0);
+    EXPECT_EQ(asked.find_attribute("anamorph:not_computed"), nullptr);
+}
+
 TEST_F(Metadata, DepthsSayHowFarTheyAreOff) {
     const auto off = [](const std::string& keys) {
         return spec_of("city.exr.drape?surface=waves&size=40&output=depth" + keys)

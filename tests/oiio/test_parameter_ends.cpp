@@ -156,7 +156,10 @@ class ParameterEnds : public InFolder {
             add("style", "outline");
         if (key == "outline_tol") add("outlines", "levels");
         if (key == "solid_scale" || key == "solid_samples") add("solid", "wood");
+        if (key == "solid" && value == "formula") add("red", "x");
+        if (key == "seed") add("perturbation", "0.1");
         if (key == "bump_scale") add("bump", "city.exr");
+        if (operation.name == "drape" && (key == "block" || key == "overlap")) add("scheme", "oka");
         if (operation.name == "mosaic") {
             if (key == "circles" || key == "circle") {
                 sources[0] = "tall.exr";

@@ -142,6 +142,7 @@ TEST_F(Projects, SayWhatIsRefused) {
         {"stereo=top-bottom", "stereo=top-bottom: must not be given with a project"},
         {"eye=left", "eye=left: must not be given with a project"},
         {"scheme=hardware", "scheme=hardware: must not be given with a project"},
+        {"machine=embm-2003", "machine=embm-2003: must not be given with a project"},
         {"to=formula", "to=formula: must not be given with a project"},
         {"face=left", "face=left: must be given together with to"},
         {"image=2", "image=2: must be the number of an image of the project, 0 to 1"},

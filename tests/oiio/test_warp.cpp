@@ -477,6 +477,8 @@ TEST_F(Warp, WhatFailsSaysWhyInALine) {
         {"city.exr.warp?mesh=grid.json&yaw=3", "yaw=3: there is no such parameter"},
         {"city.exr.warp?mesh=grid.json&output=lines", "output=lines"},
         {"city.exr.warp?mesh=grid.json&output=mesh&scheme=hardware", "output=mesh: must be another"},
+        {"city.exr.warp?mesh=grid.json&machine=ps20",
+         "machine=ps20: must be given with scheme=hardware only"},
         {"missing.exr.warp?mesh=grid.json", "missing.exr"},
         {"self.warp", "read each other"},
     };

@@ -365,7 +365,9 @@ void expect_scheme(const Case& c, int scheme, const std::string& machine = "") {
     filter->SetScheme(scheme);
     filter->SetBlock(5.5);
     filter->SetOverlap(0.75);
-    arguments.insert(arguments.end(), {{"scheme", kSchemes[scheme]}, {"block", "5.5"}, {"overlap", "0.75"}});
+    arguments.push_back({"scheme", kSchemes[scheme]});
+    if (scheme == Drape::OKA || scheme == Drape::OKA_Z)
+        arguments.insert(arguments.end(), {{"block", "5.5"}, {"overlap", "0.75"}});
     if (!machine.empty()) {
         filter->SetMachine(machine.c_str());
         arguments.push_back({"machine", machine});

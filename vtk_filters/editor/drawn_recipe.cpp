@@ -11,6 +11,7 @@
 #include "anamorph/metadata.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
+#include "anamorph/parameter/text_file.h"
 #include "anamorph/side_files.h"
 #include "recipe.h"
 #include "shown.h"
@@ -50,6 +51,17 @@ void convert_row(const Value* from, int channels, int width, unsigned char* to, 
 }
 
 }  // namespace
+
+std::string saved_file(const std::string& asked, const std::string& own,
+                       const std::vector<std::string>& endings) {
+    if (asked.empty()) return own;
+    std::string words;
+    for (std::size_t i = 0; i < endings.size(); ++i) {
+        if (anamorph::text_file::ends_with(asked, endings[i])) return asked;
+        words += (i == 0 ? "" : i + 1 < endings.size() ? ", " : " or ") + endings[i];
+    }
+    throw Error("--save", printable(asked), "must be a " + words + " file");
+}
 
 double ReadyPicture::max_error() const {
     const anamorph::Picture* picture = m_solved->of_maps();

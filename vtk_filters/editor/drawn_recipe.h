@@ -44,6 +44,11 @@ struct ScreenPixels {
     }
 };
 
+/// The file that is saved to: `asked`, or `own` where that is empty. Throws Error where `asked` has none of the endings, which say what
+/// is written.
+std::string saved_file(const std::string& asked, const std::string& own,
+                       const std::vector<std::string>& endings);
+
 class DrawnRecipe {
   public:
     /// Opens the images of a recipe. `name`: as for OpenImageIO, x.png.warp?mesh=bulge.json, or that of a recipe file. `edited`: the

@@ -63,7 +63,7 @@ struct MorphWindow::Opened {
         : recipe(name, "features"),
           features(this->checked(starts_empty)),
           title("anamorph-warp: " + name),
-          file(save_as.empty() ? recipe.edited_file() : save_as) {
+          file(saved_file(save_as, recipe.edited_file(), {".json", ".csv", ".svg"})) {
         // Sizes are those of all pictures or of none.
         const bool framed = features.frame(0).width > 0 || features.frame(1).width > 0;
         for (int k = 0; framed && k < 2; ++k) {

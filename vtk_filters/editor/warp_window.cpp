@@ -103,7 +103,7 @@ struct WarpWindow::Opened {
           source(recipe.image(0).size()),
           picture(anamorph::warp_target(recipe.values(), source)),
           title("anamorph-warp: " + name),
-          file(save_as.empty() ? recipe.edited_file() : save_as) {
+          file(saved_file(save_as, recipe.edited_file(), {".json"})) {
         if (recipe.values().given("direction"))
             mesh.direction = anamorph::read_warp_request(recipe.values(), source).direction.value();
     }

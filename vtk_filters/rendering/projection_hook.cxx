@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "anamorph/error.h"
+#include "anamorph/parameter/parameter.h"
 #include "projection_tables.h"
 #include "vtkActor.h"
 #include "vtkAnamorphPanoramaProjector.h"
@@ -245,6 +246,12 @@ void ProjectionHook::refresh_text(vtkRenderer* renderer) {
         now.clear();
     }
     complain(complaint, m_state->complaint);
+    const bool leaves_machine =
+        m_owner->GetMode() != vtkAnamorphProjectionShader::RESIDUAL && *m_owner->GetMachine() != '\0';
+    if (leaves_machine && !m_state->leaves_machine)
+        vtkWarningWithObjectMacro(m_owner, << "Machine=" << anamorph::printable(m_owner->GetMachine())
+                                           << ": is of mode residual alone");
+    m_state->leaves_machine = leaves_machine;
     const bool hides = m_owner->GetHideUnpainted();
     if (m_state->has_text && now == prepared && rays == m_state->rays && hides == m_state->hides) return;
     prepared = now;

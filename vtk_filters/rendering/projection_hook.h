@@ -61,6 +61,7 @@ class ProjectionHook : public LoadedTexture {
         std::vector<bool> rays;  ///< of each projector: are its shadows those of rays?
         bool hides = false, has_text = false;
         std::string complaint;
+        bool leaves_machine = false;  ///< was it told that the mode reads no machine?
     };
 
     vtkOpenGLTexture* panorama() const;

@@ -376,7 +376,7 @@ PreparedPanorama::PreparedPanorama(const ThrownPanorama& panorama)
         throw anamorph::Error("Mode", "residual", "must be direct or multipass for a panorama with faces");
     if (residual && !thrown.machine.empty()) {
         machine = anamorph::machine::bump_unit_from_text(thrown.machine);
-        anamorph::machine::check_on_scene(*machine, {panorama.width, panorama.height});
+        anamorph::machine::check_on_scene(*machine, chart);
     }
     const int count = machine ? machine->planes.count : thrown.directions;
     // So wide that neighbours overlap by a hair; two face each other, and never meet.

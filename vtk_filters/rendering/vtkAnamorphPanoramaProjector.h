@@ -173,7 +173,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
      * the outer circle, lines of sight that pass by it, and what lies before the place where they touch a circle receive
      * nothing; the height of the viewer above the plane does not count. They are thrown in mode DIRECT, without
      * occluders: what hides a point from the slits hides it from the viewer. Of mipmaps levels are read in which rows are of one panorama alone:
-     * as many as its height can be halved without a rest. Default: 1.
+     * as many as its height can be halved without a rest. From 1 to 1024; what is beyond becomes the nearer of these, as of all numbers
+     * of VTK that are clamped. Default: 1.
      */
     vtkSetClampMacro(Circles, int, 1, 1024);
     vtkGetMacro(Circles, int);

@@ -108,8 +108,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
      * have the machine's format and scale, and are read with weights of its bits; it says how many projection planes there are, how
      * far they go, and how large tables are, in place of NumberOfDirections, VerticalReach and TableSize. One plane lies where the
      * panorama's middle is, and up to two go to 45 degrees, unless x_max and y_max say otherwise. Every table is read,
-     * whatever its bound, which counts the format and the weights. What a card could not do is refused, and so is what a scene leaves
-     * no choice of. Default: none.
+     * whatever its bound, which counts the format and the weights. What a card could not do is refused, and so are what a scene leaves
+     * no choice of and panoramas that are neither equirectangular, cylindrical nor mercator. Other modes read no machine, and warn of one. Default: none.
      */
     void SetMachine(const char* text);
     const char* GetMachine() { return this->Machine.c_str(); }

@@ -20,16 +20,16 @@ constexpr double kLeastDepth = 1e-6;
 /// Points of a plane, each way, at which residuals are looked at: an odd number has the middle and both ends.
 constexpr int kProbes = 65;
 
+[[noreturn]] void refuse(const std::string& what) {
+    throw Error(
+        "machine: embm-2003 draws rectilinear views, without a lens, of cylindrical, equirectangular and "
+        "mercator panoramas: " +
+        what);
+}
+
 void check_charts(const Panorama& view) {
-    const auto refuse = [](const std::string& what) {
-        throw Error(
-            "machine: embm-2003 draws rectilinear views, without a lens, of cylindrical, equirectangular and "
-            "mercator panoramas: " +
-            what);
-    };
-    const Chart &source = view.source(), &target = view.target();
-    if (!rows_turn(source.projection()))
-        refuse("the source's projection is " + std::string(name_of(source.projection())));
+    const Chart& target = view.target();
+    check_bump_source(view.source());
     if (target.projection() != Projection::rectilinear)
         refuse("the picture's projection is " + std::string(name_of(target.projection())));
     if (target.lens()) refuse("the picture has a lens");
@@ -171,6 +171,11 @@ ProjectionPlane plane_at(const Panorama& view, const glm::dmat3& axes, std::vect
 }
 
 }  // namespace
+
+void check_bump_source(const Chart& source) {
+    if (!rows_turn(source.projection()))
+        refuse("the source's projection is " + std::string(name_of(source.projection())));
+}
 
 glm::dvec2 plane_residual(const Chart& source, const ProjectionPlane& plane, double x, double y) {
     // Azimuths are counted from the direction of projection, which no seam is near to.

@@ -37,6 +37,9 @@ struct PlaneOptions {
                0;  ///< ranges of x' and y' that coefficients and bump maps are made for; 0: those of the view
 };
 
+/// Throws Error naming `machine` where a source's columns are no azimuths, as it must have for planes (projection_planes(), check_on_scene()).
+void check_bump_source(const Chart& source);
+
 /// Lays planes through a view. The direction of a single one is the level part of where the camera looks (4.5).
 ///
 /// Throws Error naming `machine` where the scheme has no meaning: of targets other than rectilinear ones without a lens

@@ -76,7 +76,7 @@ void check_card(const BumpUnit& unit) {
                     std::string("must be V8U8") + (card->sixteen ? " or V16U16" : "") + with);
 }
 
-void check_on_scene(const BumpUnit& unit, const Size& source) {
+void check_on_scene(const BumpUnit& unit, const Chart& source) {
     const auto refuse = [](const char* key, const std::string& value, const std::string& rule) {
         throw Error(std::string("machine: ") + key, value, rule + " on a scene");
     };
@@ -93,7 +93,8 @@ void check_on_scene(const BumpUnit& unit, const Size& source) {
     if (unit.address_bits != kAddressBits)
         refuse("address_bits", std::to_string(unit.address_bits),
                "must be " + std::to_string(kAddressBits) + ", as the graphics card reads the panorama,");
-    check_texture_side(source, unit.texture_side);
+    check_bump_source(source);
+    check_texture_side({source.width(), source.height()}, unit.texture_side);
 }
 
 NumberFormat texel_of(BumpCard card) {

@@ -63,7 +63,7 @@ struct BumpUnit {
 void check_card(const BumpUnit& unit);
 /// Checks that a unit can throw a panorama onto a scene, which is drawn by a graphics card of today with the unit's tables
 /// (vtkAnamorphProjectionShader). Throws Error naming `machine` and the key.
-void check_on_scene(const BumpUnit& unit, const Size& source);
+void check_on_scene(const BumpUnit& unit, const Chart& source);
 /// The texels that a card's bump maps have.
 NumberFormat texel_of(BumpCard card);
 /// The name of a card, as users write it.

@@ -211,6 +211,11 @@ BlockMachine block_machine_from_text(std::string_view text) {
     members.read(kOkaBlockRow, machine.block);
     members.read(kOkaOverlapRow, machine.overlap);
     members.finish();
+    // With fewer, every address but those of the first texel is beyond the range.
+    if (const int most = machine.address_bits - 2; machine.fraction_bits > most)
+        throw Error("machine: fraction_bits", std::to_string(machine.fraction_bits),
+                    "must be at most " + std::to_string(most) + " with address_bits=" +
+                        std::to_string(machine.address_bits) + ", as an address has a sign and whole texels");
     return machine;
 }
 

@@ -58,7 +58,7 @@ ParameterTable view_rows() {
         tile(),
         mip(),
         hash(),
-        reached("of schemes other than auto"),
+        reached("of schemes other than auto and of films"),
     };
 }
 
@@ -307,7 +307,12 @@ class DrapeRequest {
     }
     /// The machine of scheme hardware.
     std::optional<machine::BlockMachine> machine(const ParameterValues& values) const {
-        return drape_machine(values, options(values));
+        std::optional<machine::BlockMachine> machine = drape_machine(values, options(values));
+        rows::check_scheme_of(values, "machine", {"hardware"});
+        for (const char* name : {"block", "overlap"}) rows::check_scheme_of(values, name, {"oka", "oka-z"});
+        if (machine && values.given("holes"))
+            throw Error("holes", values.text("holes"), "must not be given with scheme=hardware");
+        return machine;
     }
     const Size& source() const { return m_source; }
     surface::SurfaceSum sum(const ParameterValues& values) const { return m_surfaces->sum_of(values); }

@@ -88,6 +88,7 @@ class SolvedPair final : public SolvedPicture {
         return m_of_two->reached(parallel_for);
     }
     bool reached_by_drawing() const override { return m_of_two->reached_by_drawing(); }
+    Attributes known() const override { return m_of_two->known(); }
     std::unique_ptr<const SolvedPicture> of_moved() const override {
         std::unique_ptr<const SolvedPicture> moved = m_of_two->of_moved();
         return moved ? std::make_unique<SolvedPair>(std::move(moved), m_places) : nullptr;

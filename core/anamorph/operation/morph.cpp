@@ -56,6 +56,7 @@ ParameterTable make_morph_table() {
         tile(),
         mip(),
         hash(),
+        reached("of scheme hardware and of films"),
         filter(),
         clamp(),
         data_channels(),
@@ -85,6 +86,7 @@ std::optional<machine::MorphUnit> unit_of(const ParameterValues& values) {
     const machine::MorphUnit unit = values.given("machine")
                                         ? machine::morph_unit_from_text(values.text("machine"))
                                         : machine::MorphUnit{};
+    rows::check_scheme_of(values, "machine", {"hardware"});
     if (values.text("scheme") != "hardware") return {};
     rows::check_overscan(values);
     if (values.text("output") == "lines")

@@ -194,6 +194,7 @@ ParameterTable make_pano_table() {
         tile(),
         mip(),
         hash(),
+        reached("of scheme hardware and of films"),
         filter(),
         clamp(),
         data_channels(),
@@ -508,6 +509,7 @@ LensModel lens_of(const ParameterValues& values, const std::string& name) {
 std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
     const machine::BumpUnit unit =
         values.given("machine") ? machine::bump_unit_from_text(values.text("machine")) : machine::BumpUnit{};
+    rows::check_scheme_of(values, "machine", {"hardware"});
     if (values.text("scheme") != "hardware") return {};
     return unit;
 }
@@ -734,16 +736,15 @@ std::optional<PanoramaLevel> panorama_level(const Chart& target, const Reproject
 namespace {
 
 /// A panorama drawn by a bump unit.
-Picture bumped_picture(const ReprojectRequest& request) {
+std::unique_ptr<const SolvedPicture> bumped_picture(const ReprojectRequest& request) {
     const auto plan = std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine);
     Picture picture = picture_through(plan, Border(request.source.chart, request.options.wrap),
                                       request.options.filter, request.options.output);
     picture.says = [plan](const ParallelFor& parallel_for) -> Attributes {
-        return {{"anamorph:saturated_pixels", double(plan->saturated_pixels(parallel_for))},
-                {"anamorph:saturated_texels", plan->saturated_texels()}};
+        return {{"anamorph:saturated_pixels", double(plan->saturated_pixels(parallel_for))}};
     };
     picture.reached_by_drawing = true;
-    return picture;
+    return solved(std::move(picture), {{"anamorph:saturated_texels", plan->saturated_texels()}});
 }
 
 class Panos final : public Pictures {
@@ -765,9 +766,9 @@ class Panos final : public Pictures {
         if (!request.machine) picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back(request.source.says());
         picture.solve = [request, pair = m_pair] {
-            return solved(request.machine ? bumped_picture(request)
-                          : pair          ? pair->picture(request)
-                                          : reprojected_picture(request.map(), request.options));
+            if (request.machine) return bumped_picture(request);
+            return solved(pair ? pair->picture(request)
+                               : reprojected_picture(request.map(), request.options));
         };
         return std::move(picture);
     }

@@ -433,6 +433,9 @@ void check_rows(const ParameterValues& values) {
 void check_ways(const ParameterValues& values) {
     if (values.text("scheme") == "hardware")
         throw Error("scheme", "hardware", "must not be given with a project of Hugin as src");
+    if (values.given("machine"))
+        throw Error("machine", printable(values.text("machine")),
+                    "must not be given with a project of Hugin as src");
     if (has_formula(values)) throw Error("to", "formula", "must not be given with a project of Hugin as src");
     if (values.given("face") && !values.given("to"))
         throw Error("face", values.text("face"), "must be given together with to");

@@ -207,6 +207,16 @@ void check_overscan(const ParameterValues& values, int pieces) {
         throw Error("overscan", text, "must not be given with scheme=hardware");
 }
 
+void check_scheme_of(const ParameterValues& values, const char* name,
+                     const std::vector<std::string>& schemes) {
+    if (!values.given(name) ||
+        std::find(schemes.begin(), schemes.end(), values.text("scheme")) != schemes.end())
+        return;
+    std::string words;
+    for (const std::string& scheme : schemes) words += (words.empty() ? "" : " or ") + scheme;
+    throw Error(name, printable(values.text(name)), "must be given with scheme=" + words + " only");
+}
+
 Parameter concatenate() {
     return toggle("concatenate", "1",
                   "1: a source that is itself a recipe of one picture is not drawn first, but both maps are "

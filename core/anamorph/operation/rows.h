@@ -102,6 +102,10 @@ Size overscan_of(const ParameterValues& values, const Size& shown);
 /// Throws Error where the row is given in a picture of several faces, or with scheme=hardware.
 void check_overscan(const ParameterValues& values, int pieces = 1);
 
+/// Throws Error where a row is given with another scheme than those that read it: "must be given with scheme=oka or oka-z only".
+void check_scheme_of(const ParameterValues& values, const char* name,
+                     const std::vector<std::string>& schemes);
+
 /// The three numbers of a row, each from `least` to `most`. Throws Error where there are not three such.
 glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, double least, double most);
 

@@ -72,7 +72,6 @@ Picture shaded_points(const ShadedLayers& drawn, const MorphOptions& options) {
     picture.filter = options.filter;
     picture.output = options.output;
     picture.reached_by_drawing = true;
-    picture.says = [drawn](const ParallelFor&) -> Attributes { return {says_evaluations(drawn)}; };
     return picture;
 }
 
@@ -94,6 +93,7 @@ class ShadedMorph final : public SolvedPicture {
                 says_evaluations(m_drawn)};
     }
     bool reached_by_drawing() const override { return true; }
+    Attributes known() const override { return {says_evaluations(m_drawn)}; }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
         for (const ShadedLayer& layer : m_drawn.layers)
@@ -167,7 +167,8 @@ void check_shaded_sources(const std::vector<SourceImage>& sources) {
 std::unique_ptr<const SolvedPicture> shaded_morph(const std::shared_ptr<const Features>& features,
                                                   const MorphRequest& request, const MorphOptions& options) {
     ShadedLayers drawn = shaded_layers(features, request, options);
-    if (options.output != Output::color) return solved(shaded_points(drawn, options));
+    if (options.output != Output::color)
+        return solved(shaded_points(drawn, options), {says_evaluations(drawn)});
     return std::make_unique<ShadedMorph>(std::move(drawn), options.filter, request.machine->buffer);
 }
 

@@ -8,16 +8,18 @@ namespace {
 
 class Solved final : public SolvedPicture {
   public:
-    explicit Solved(Picture picture) : m_picture(std::move(picture)) {}
+    Solved(Picture picture, Attributes known) : m_picture(std::move(picture)), m_known(std::move(known)) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         const Reached reached = m_picture.reached(parallel_for);
         Attributes all = {{"anamorph:max_error", reached.max_error},
                           {"anamorph:exact_fraction", reached.exact_fraction}};
+        all.insert(all.end(), m_known.begin(), m_known.end());
         if (m_picture.says)
             for (Attribute& attribute : m_picture.says(parallel_for)) all.push_back(std::move(attribute));
         return all;
     }
+    Attributes known() const override { return m_known; }
     const Picture* of_maps() const override { return &m_picture; }
     bool reached_by_drawing() const override { return m_picture.reached_by_drawing; }
     std::unique_ptr<const SolvedPicture> of_moved() const override {
@@ -30,6 +32,7 @@ class Solved final : public SolvedPicture {
 
   private:
     Picture m_picture;
+    Attributes m_known;
 };
 
 }  // namespace
@@ -58,8 +61,8 @@ Attributes said_of_pixels(double aspect) {
     return says;
 }
 
-std::unique_ptr<const SolvedPicture> solved(Picture picture) {
-    return std::make_unique<Solved>(std::move(picture));
+std::unique_ptr<const SolvedPicture> solved(Picture picture, Attributes known) {
+    return std::make_unique<Solved>(std::move(picture), std::move(known));
 }
 
 }  // namespace anamorph

@@ -21,8 +21,9 @@ std::vector<int> moved_channels(const DataChannels& data);
 /// What a picture says of its pixels, by the width of one over its height: nothing where they are square.
 Attributes said_of_pixels(double aspect);
 
-/// A picture as an operation hands it to a host: it says anamorph:max_error, anamorph:exact_fraction, and what it says itself.
-std::unique_ptr<const SolvedPicture> solved(Picture picture);
+/// A picture as an operation hands it to a host: it says anamorph:max_error, anamorph:exact_fraction, what it says itself, and
+/// `known`, which is known before anything is drawn.
+std::unique_ptr<const SolvedPicture> solved(Picture picture, Attributes known = {});
 
 /// Copies channels from one picture to another of the same size and type, at the pixels that `is_there` says.
 template <class IsThere>

@@ -24,6 +24,7 @@ class SolvedStereo final : public SolvedPicture {
         return m_of_one->reached(parallel_for);
     }
     bool reached_by_drawing() const override { return m_of_one->reached_by_drawing(); }
+    Attributes known() const override { return m_of_one->known(); }
     std::unique_ptr<const SolvedPicture> of_moved() const override {
         std::unique_ptr<const SolvedPicture> moved = m_of_one->of_moved();
         return moved ? std::make_unique<SolvedStereo>(std::move(moved), m_eyes, m_size) : nullptr;

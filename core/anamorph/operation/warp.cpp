@@ -41,6 +41,7 @@ ParameterTable make_warp_table() {
         tile(),
         mip(),
         hash(),
+        reached("of scheme hardware"),
         filter(),
         clamp(),
         data_channels(),
@@ -74,6 +75,7 @@ std::optional<machine::ShaderUnit> shader_of(const ParameterValues& values) {
     const machine::ShaderUnit unit = values.given("machine")
                                          ? machine::shader_unit_from_text(values.text("machine"))
                                          : machine::ShaderUnit{};
+    rows::check_scheme_of(values, "machine", {"hardware"});
     if (values.text("scheme") != "hardware") return {};
     return unit;
 }

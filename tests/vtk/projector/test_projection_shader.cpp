@@ -690,12 +690,12 @@ TEST(VtkProjectionShader, HardTrianglesHarmNothing) {
 /// VTK's errors of an object.
 class Errors {
   public:
-    explicit Errors(vtkObject* object) {
+    explicit Errors(vtkObject* object, unsigned long event = vtkCommand::ErrorEvent) {
         m_command->SetCallback([](vtkObject*, unsigned long, void* to, void* text) {
             static_cast<std::vector<std::string>*>(to)->emplace_back(static_cast<char*>(text));
         });
         m_command->SetClientData(&texts);
-        object->AddObserver(vtkCommand::ErrorEvent, m_command);
+        object->AddObserver(event, m_command);
     }
     std::vector<std::string> texts;
 
@@ -934,12 +934,49 @@ TEST(VtkProjectionShader, MachinesThatCannotAreRefused) {
     EXPECT_NE(room.picture(), own);
     EXPECT_EQ(errors.texts.size(), count);
     // It is of mode residual alone.
+    const Errors warnings(shader, vtkCommand::WarningEvent);
     shader->SetMachine("nothing");
-    shader->SetModeToDirect();
-    EXPECT_NE(room.picture(), own);
-    EXPECT_EQ(errors.texts.size(), count);
+    for (const int mode : {vtkAnamorphProjectionShader::DIRECT, vtkAnamorphProjectionShader::MULTIPASS}) {
+        const auto told = warnings.texts.size();
+        shader->SetMode(mode);
+        EXPECT_NE(room.picture(), own);
+        EXPECT_EQ(room.picture(), room.picture());
+        EXPECT_EQ(errors.texts.size(), count);
+        ASSERT_EQ(warnings.texts.size(), told + 1);
+        EXPECT_THAT(warnings.texts.back(), HasSubstr("Machine=nothing: is of mode residual alone"));
+    }
     shader->SetMachine(nullptr);
     EXPECT_STREQ(shader->GetMachine(), "");
+}
+
+TEST(VtkProjectionShader, MachinesRefuseTheSourcesThatPanoRefuses) {
+    using testing::HasSubstr;
+    for (const Projection source :
+         {Projection::fisheye, Projection::pannini, Projection::stereographic, Projection::cylindrical}) {
+        const Chart chart(source, 100, 50, 90);
+        SCOPED_TRACE(std::string(name_of(source)));
+        const auto projector = projector_of(chart, smooth_texture(100, 50));
+        Room room;
+        const auto own = room.picture();
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        const Errors errors(shader);
+        shader->AddProjector(projector);
+        shader->SetModeToResidual();
+        shader->SetMachine("embm-2003:projecting=pixel,planes=4,card=geforce4");
+        shader->AddTo(room.actor);
+        const auto seen = room.picture();
+        if (source == Projection::cylindrical) {
+            EXPECT_TRUE(errors.texts.empty());
+            EXPECT_NE(seen, own);
+            continue;
+        }
+        EXPECT_EQ(seen, own);
+        ASSERT_FALSE(errors.texts.empty());
+        EXPECT_THAT(errors.texts.back(),
+                    HasSubstr("machine: embm-2003 draws rectilinear views, without a lens, of cylindrical, "
+                              "equirectangular and mercator panoramas: the source's projection is " +
+                              std::string(name_of(source))));
+    }
 }
 
 TEST(VtkProjectionShader, AProjectorThatWasNeverTurnedPaintsNothing) {

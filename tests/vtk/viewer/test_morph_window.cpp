@@ -301,6 +301,7 @@ TEST_F(VtkMorphWindow, TheProgramSaysWhatIsWrong) {
              {recipe("f.csv", "&shape_weights=0.5,0.5"), "", "the window has t"},
              {recipe("f.csv", "&frames=5"), "", "frames=5"},
              {recipe("f.csv", "&c=" + path("a.png")), "", "must have two, a and b"},
+             {recipe(), "--save x.txt", "--save=x.txt: must be a .json, .csv or .svg file"},
              {path("a.png") + ".morph?b=" + path("b.png"), "", "features is not given"},
              {path("a.png") + ".morph?features=" + path("f.csv"), "", "must have two"}}) {
         const auto [failed, said] = run(program, "'" + name + "' " + more + " --picture " + path("x.png"));

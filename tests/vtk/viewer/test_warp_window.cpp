@@ -551,6 +551,8 @@ TEST_F(VtkWarpWindow, TheProgramWritesItsWindowAndSaysWhatIsWrong) {
               "a graphics card does not draw by filters other than"},
              {p + path("m.json") + " --draw paper --picture " + path("x.png"),
               "draw=paper: must be picture or fragments"},
+             {p + path("m.json") + " --save x.txt --picture " + path("x.png"),
+              "--save=x.txt: must be a .json file"},
              {p + path("m.json") + " --picture " + path("none/x.png"), "x.png"}}) {
         const std::size_t space = arguments.find(" --");
         const auto [failed, said] =

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 
 namespace {
@@ -94,7 +95,7 @@ void prepare(EditWindow& window, bool by_fragments) {
     window.interactor()->Initialize();
 }
 
-void measure_warp(const char* recipe, int frames, bool by_fragments) {
+void measure_warp(const std::string& recipe, int frames, bool by_fragments) {
     anamorph_editor::WarpWindow window(recipe);
     prepare(window, by_fragments);
     const auto at = middle_point(window);
@@ -106,7 +107,7 @@ void measure_warp(const char* recipe, int frames, bool by_fragments) {
     }
 }
 
-void measure_morph(const char* recipe, int frames, bool by_fragments) {
+void measure_morph(const std::string& recipe, int frames, bool by_fragments) {
     anamorph_editor::MorphWindow window(recipe);
     prepare(window, by_fragments);
     anamorph_editor::Pane& pane = window.pane(0);
@@ -119,12 +120,21 @@ void measure_morph(const char* recipe, int frames, bool by_fragments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) return 1;
+    const std::string recipe = argc > 1 ? argv[1] : "--help";
+    if (recipe.starts_with("-")) {
+        std::puts("warp_frames RECIPE [FRAMES [fragments]]");
+        return recipe == "--help" && argc > 1 ? 0 : 1;
+    }
     const int frames = argc > 2 ? std::atoi(argv[2]) : 200;
     const bool by_fragments = argc > 3 && std::string(argv[3]) == "fragments";
-    if (std::string(argv[1]).find(".morph") != std::string::npos)
-        measure_morph(argv[1], frames, by_fragments);
-    else
-        measure_warp(argv[1], frames, by_fragments);
-    measure_nothing(frames);
+    try {
+        if (recipe.find(".morph") != std::string::npos)
+            measure_morph(recipe, frames, by_fragments);
+        else
+            measure_warp(recipe, frames, by_fragments);
+        measure_nothing(frames);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "warp_frames: %s\n", error.what());
+        return 1;
+    }
 }
