@@ -231,6 +231,19 @@ def main():
         off = report("shader " + mode + ", occluders" * hides, throw, truth)
         failed = failed or off > MOST
 
+    # Concentric mosaics, of which plain VTK has nothing like it; tests/vtk/projector measures where texels are read.
+    for circles in (2, 16):
+        def throw_mosaic(window, places, circles=circles):
+            window.shader, projector = vtkAnamorphProjectionShader(), vtkAnamorphPanoramaProjector()
+            projector.SetPanorama(texture(width, circles * (width // 16), places))
+            projector.SetProjectionName("cylindrical")
+            projector.SetCircles(circles)
+            projector.SetCircleRadius(HALF / 2)
+            projector.SetPosition(POSITION)
+            window.shader.AddProjector(projector)
+            window.shader.AddTo(window.actor)
+        report(f"shader mosaic, {circles} circles", throw_mosaic, None)
+
     def by_coordinates(output, size):
         def show(window, places):
             window.mapper.SetInputData(output)

@@ -9,6 +9,7 @@ import time
 
 from display import xvfb_run
 
+CONTROL = 0xffe3
 # The view's background is of a color that nothing else has, by which it is found on the screen.
 SCRIPT = """
 import json, os
@@ -93,6 +94,19 @@ class Shown:
         """A point of the view, pixels from its lower left, on the screen."""
         return self.left + at[0], self.bottom - at[1]
 
+    def click(self, x, y, control=False):
+        """At a place in space, from the middle of the view."""
+        size = self.state()["size"]
+        at = self.of_view((size[0] / 2 + x / self.pixel, size[1] / 2 + y / self.pixel))
+        self.screen.move(at[0] + 1, at[1])
+        self.screen.move(*at)
+        if control:
+            self.screen.key(CONTROL, True)
+        self.screen.button(True)
+        self.screen.button(False)
+        if control:
+            self.screen.key(CONTROL, False)
+
     def surface(self):
         """Which pixels of the view are not its background."""
         picture = self.screen.picture()[self.bottom - self.state()["size"][1]:self.bottom, self.left:self.left + self.state()["size"][0]]
@@ -112,8 +126,9 @@ class Shown:
 
 def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolution=64, PhiResolution=65)",
         settings="Deformations=[0, 0, .5, .5, 0, 0, .5, 0, 1], Depths=[0, 0, 1]", position="[0, -7, .3]", focus="[0, 0, .3]",
-        up="[0, 0, 1]"):
-    """Runs `drive` of a window in a display of its own; `file` is the test, which calls this again there."""
+        up="[0, 0, 1]", script=SCRIPT):
+    """Runs `drive` of a window in a display of its own; `file` is the test, which calls this again there. `script` shows the Deform, or
+    something else."""
     if len(sys.argv) > 1:
         shown = Shown(sys.argv[1])
         try:
@@ -123,9 +138,9 @@ def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolu
         return
     with tempfile.TemporaryDirectory() as folder:
         os.makedirs(folder + "/.config")
-        with open(folder + "/script.py", "w") as script:
-            script.write(SCRIPT.format(folder=folder, auto_apply=auto_apply, surface=surface, settings=settings, position=position,
-                                       focus=focus, up=up))
+        with open(folder + "/script.py", "w") as file_:
+            file_.write(script.format(folder=folder, auto_apply=auto_apply, surface=surface, settings=settings, position=position,
+                                      focus=focus, up=up))
         environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder}
         done = subprocess.run([*xvfb_run(number), sys.executable, file, folder], env=environment, capture_output=True, text=True,
                               timeout=390)

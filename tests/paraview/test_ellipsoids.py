@@ -15,6 +15,7 @@ import anamorph
 import numpy as np
 from paraview import simple
 from paraview.simple import *
+from textures import texture_of
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
@@ -178,7 +179,7 @@ view = new_view(1)
 shown = show(OpenDataFile(os.path.abspath("dressed.nudes")), view)
 ResetCamera(view)
 before = pixels(view)
-shown.EllipsoidTextures, shown.EllipsoidTextureNames = [CreateTexture(os.path.abspath("wood.png"))], ["wood"]
+shown.EllipsoidTextures, shown.EllipsoidTextureNames = [texture_of(os.path.abspath("wood.png"))], ["wood"]
 after = pixels(view)
 assert ((after == (10, 240, 60)).all(-1) == (before == (20, 30, 250)).all(-1)).all() and (after == (10, 240, 60)).all(-1).sum() > 500
 assert ((after == (250, 20, 30)).all(-1) == (before == (250, 20, 30)).all(-1)).all()
@@ -246,6 +247,7 @@ RANKS = r'''
 import os
 from paraview import simple
 from paraview.simple import *
+from textures import texture_of
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))

@@ -13,6 +13,7 @@ import sys
 import numpy as np
 from paraview import simple
 from paraview.simple import *
+from textures import texture_of
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
@@ -83,7 +84,7 @@ for scene in (Sphere(), Wavelet(WholeExtent=[-4, 4, -4, 4, -4, 4])):
     assert projection.GetDataInformation().GetNumberOfCells() == fine
     assert lines.std() > 30 and (lines.sum(-1) > 0).all(), "no lines are shown"
     # A texture that is set is shown instead.
-    shown.Texture = CreateTexture(PICTURE)
+    shown.Texture = texture_of(PICTURE)
     off = np.abs(pixels(view) - wanted).max()
     assert off <= 2.5, (scene, off)
     shown.Texture = None

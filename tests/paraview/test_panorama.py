@@ -14,6 +14,7 @@ import anamorph
 import numpy as np
 from paraview import simple
 from paraview.simple import *
+from textures import texture_of
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
@@ -89,7 +90,7 @@ shown.SetRepresentationType("Panorama")
 Render(view)  # The first one moves the camera.
 view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp, view.CameraViewAngle = [0, 0, 0], [0, 0, -1], [0, 1, 0], 90
 assert (pixels(view) > 250).all(), "no panorama, no change"
-shown.Panorama = CreateTexture("panorama.png")
+shown.Panorama = texture_of("panorama.png")
 shown.ProjectorPosition, shown.ProjectorDirection = list(POSITION), [1, 0, 0]
 for mode in ("Direct", "Residual", "Multipass"):
     shown.ProjectionMode = mode
@@ -129,16 +130,18 @@ both = GroupDatasets(Input=[room, board])
 together = Show(both, view)
 white(together)
 together.SetRepresentationType("Panorama")
-together.Panorama = CreateTexture("panorama.png")
+together.Panorama = texture_of("panorama.png")
 together.ProjectorPosition, together.ProjectorDirection = list(POSITION), [1, 0, 0]
 compare(view, exact())
 together.PanoramaOcclusion = 1
 check_hidden(*behind_board())
-together.Position = [0, 0, 1]
+place = "Translation" if "Translation" in together.ListProperties() else "Position"  # before ParaView 5.13
+together.SetPropertyWithName(place, [0, 0, 1])
 together.ProjectorPosition = list(POSITION + [0, 0, 1])
 view.CameraPosition, view.CameraFocalPoint = [0, 0, 1], [0, 0, 0]
 check_hidden(*behind_board())
-together.Position, together.ProjectorPosition = [0, 0, 0], list(POSITION)
+together.SetPropertyWithName(place, [0, 0, 0])
+together.ProjectorPosition = list(POSITION)
 view.CameraPosition, view.CameraFocalPoint = [0, 0, 0], [0, 0, -1]
 board.Origin, board.Point1, board.Point2 = [9, 9, 9], [9.1, 9, 9], [9, 9.1, 9]
 compare(view, exact())
@@ -159,7 +162,7 @@ blocks = GroupDatasets(Input=[room])
 shown = Show(blocks, view)
 white(shown)
 shown.SetRepresentationType("Panorama")
-shown.Panorama = CreateTexture("panorama.png")
+shown.Panorama = texture_of("panorama.png")
 shown.ProjectorPosition, shown.ProjectorDirection = list(POSITION), [1, 0, 0]
 compare(view, exact())
 
@@ -209,7 +212,7 @@ Delete(shown)
 shown = Show(room, view)
 white(shown)
 shown.SetRepresentationType("Panorama")
-shown.Panorama, shown.PanoramaProjection = CreateTexture("mosaics.png"), "Cylindrical"
+shown.Panorama, shown.PanoramaProjection = texture_of("mosaics.png"), "Cylindrical"
 shown.ProjectorPosition, shown.ProjectorDirection = list(CENTRE), [1, 0, 0]
 shown.PanoramaCircles, shown.PanoramaCircleRadius = CIRCLES, RADIUS
 assert of_mosaics(np.zeros(3))[1].sum() > 20000
@@ -251,6 +254,7 @@ import sys
 
 from paraview import simple
 from paraview.simple import *
+from textures import texture_of
 
 if "ANAMORPH_SERVER" in os.environ:
     host, port = os.environ["ANAMORPH_SERVER"].split(":")
@@ -261,7 +265,7 @@ view = CreateRenderView(ViewSize=[200, 200], OrientationAxesVisibility=0, UseFXA
 view.RemoteRenderThreshold = 0 if sys.argv[2] == "there" else 1e9
 shown = Show(Sphere(Radius=2, ThetaResolution=64, PhiResolution=48), view)
 shown.SetRepresentationType("Panorama")
-shown.Panorama, shown.ProjectorPosition = CreateTexture("panorama.png"), [.3, -.2, .4]
+shown.Panorama, shown.ProjectorPosition = texture_of("panorama.png"), [.3, -.2, .4]
 # In light, normals where pieces meet would count.
 shown.Ambient, shown.Diffuse, shown.Specular = 1, 0, 0
 Render(view)

@@ -30,7 +30,7 @@ def crowd(count, size=0.02, aspect=3.0, seed=1):
     a color, Color, and one of its own, Id."""
     random = np.random.default_rng(seed)
     numbers = np.arange(count)
-    ids = np.stack([numbers % 256, numbers // 256, numbers * 0 + 255], 1).astype(np.uint8)
+    ids = np.stack([numbers % 256, numbers // 256 % 256, 255 - numbers // 65536], 1).astype(np.uint8)
     return points_of(random.uniform(-1, 1, (count, 3)), Axes=size * aspect ** random.uniform(-1, 1, (count, 3)),
                      Orientation=random.normal(size=(count, 4)), Id=ids,
                      Color=random.integers(0, 256, (count, 3)).astype(np.uint8))
@@ -76,7 +76,7 @@ class Scene:
         self.actor.GetProperty().LightingOff()
         colors = self.colors()
         self.actor.GetProperty().LightingOn()
-        return np.where(colors[..., 2] == 255, colors[..., 0] + 256 * colors[..., 1], -1)
+        return np.where(colors[..., 2] > 0, colors[..., 0] + 256 * colors[..., 1] + 65536 * (255 - colors[..., 2]), -1)
 
     def depths(self):
         """The depth of each pixel from the eye along the camera's axis; infinite: nothing there."""

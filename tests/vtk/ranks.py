@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Run by mpiexec: every rank deforms a part of a surface, throws a panorama onto it or bakes one, and has the bits that the whole has.
 # Argument: how many ranks there have to be.
+import math
 import os
 import sys
 import traceback
@@ -181,6 +182,51 @@ def check_other_blocks(rank, ranks):
         assert made.GetBlock(rank).GetNumberOfPoints() > 0 or algorithm is projection
 
 
+def check_picks(rank, ranks):
+    """What a line first meets, what is nearest to a point, and where the selected bump is, all find, whoever has that part of a ball."""
+    def deformed_ball(controller):
+        ball, deform = vtkSphereSource(), anamorph.vtkAnamorphDeform()
+        ball.SetRadius(1)
+        ball.SetThetaResolution(48)
+        ball.SetPhiResolution(49)
+        deform.SetInputConnection(ball.GetOutputPort())
+        deform.SetController(controller)
+        deform.AutomaticPlaneOff()
+        for center in ((0.21, 0.33), (-0.43, 0.13), (0.11, -0.37), (-0.3, -0.3)):
+            deform.AddDeformation(*center, 0.3, 0.2, 0.1, 0, 0.4)
+            deform.SetDepth(deform.GetNumberOfDeformations() - 1, 0, 0, 1)
+        return ball, deform  # the first has to stay
+
+    _, deform = deformed_ball(vtkMultiProcessController.GetGlobalController())
+    deform.UpdatePiece(rank, ranks, 0)
+    _, whole = deformed_ball(None)
+    whole.Update()
+    met = set()
+    for k in range(12):
+        x, y = 0.7 * math.cos(k * math.pi / 6 + 0.1), 0.7 * math.sin(k * math.pi / 6 + 0.1)
+        for each in (deform, whole):
+            each.PickOnLine(x, y, 9, x, y, -9)
+        assert math.dist(deform.GetPickedPoint(), whole.GetPickedPoint()) < 1e-6 and whole.GetPickedParameters()[3] == 1
+        assert math.dist(deform.GetPickedParameters(), whole.GetPickedParameters()) < 1e-5, k
+        met.add(deform.GetPickedPoint())
+        for each in (deform, whole):
+            each.PickAt(x, y, 0.6)
+        assert math.dist(deform.GetPickedParameters(), whole.GetPickedParameters()) < 1e-5, k
+    assert len(met) == 12
+    deform.PickOnLine(3, 0, 9, 3, 0, -9)
+    assert deform.GetPickedParameters() == (0, 0, 0, 0)
+    heights = set()
+    for position in range(4):
+        for each in (deform, whole):
+            each.SetSelectedDeformation(position)
+            each.FindSelected()
+            each.FindAnchor()
+        assert abs(deform.GetSelectedHeights()[0] - whole.GetSelectedHeights()[0]) < 1e-6, position
+        assert math.dist(deform.GetSelectedAnchor(), whole.GetSelectedAnchor()) < 0.1, position
+        heights.add(deform.GetSelectedHeights()[0])
+    assert len(heights) == 4 and min(heights) > 1
+
+
 def errors_of(bake):
     errors = []
     for watched in (bake, bake.GetExecutive()):
@@ -301,6 +347,7 @@ def main():
     check_baked_by_pieces(rank, ranks)
     check_blocks(rank, ranks)
     check_other_blocks(rank, ranks)
+    check_picks(rank, ranks)
     check_failures(rank)
     print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
 

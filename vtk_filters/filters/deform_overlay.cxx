@@ -252,9 +252,9 @@ struct BestPoint {
 
 }  // namespace
 
-void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
-                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
-                  const anamorph::ParameterPlane& plane, double (&heights)[2]) {
+double find_heights(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                    const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
+                    const anamorph::ParameterPlane& plane, double (&heights)[2]) {
     const auto each_point = [&](const auto& body) {
         for (std::size_t m = 0; m < std::min(meshes.size(), deformed.size()); ++m) {
             if (!meshes[m]) continue;
@@ -277,7 +277,7 @@ void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<Def
         }
         center.offer(share_of(bump, s, place), m, i);
     });
-    if (!center.found) return;
+    if (!center.found) return kNowhere;
     const double height = height_of(center.mesh, center.point);
     heights[0] = heights[1] = height;
     // The corner's nearest point, in extents; in depth it is near that of the centre.
@@ -288,11 +288,12 @@ void find_heights(const Deformation& bump, const std::vector<std::unique_ptr<Def
         const double apart = (height_of(m, i) - height) / (16 * length);
         corner.offer(-(glm::dot(off(s), off(s)) + apart * apart), m, i);
     });
-    if (!corner.found) return;
     // Where the mesh ends before the corner, that is as high as the centre.
     constexpr double kNear = 0.25;
-    const glm::dvec2 found = off(meshes[corner.mesh]->parameters()[corner.point]);
+    const glm::dvec2 found =
+        corner.found ? off(meshes[corner.mesh]->parameters()[corner.point]) : glm::dvec2(1);
     if (glm::dot(found, found) < kNear) heights[1] = height_of(corner.mesh, corner.point);
+    return -center.measure;
 }
 
 namespace {
@@ -359,13 +360,13 @@ glm::dvec3 normal_at(const TrianglePlace& place, vtkPointSet* mesh) {
 
 }  // namespace
 
-void find_anchor(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
-                 const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
-                 const anamorph::ParameterPlane& plane, double (&anchor)[9]) {
+double find_anchor(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                   const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                   const anamorph::ParameterPlane& plane, double (&anchor)[9]) {
     const TrianglePlace place = place_over(bump, meshes, undeformed, plane);
-    if (!std::isfinite(place.apart)) return;
+    if (!std::isfinite(place.apart)) return kNowhere;
     glm::dvec3 normal = normal_at(place, undeformed[place.mesh]);
-    if (!(glm::length(normal) > 0)) return;
+    if (!(glm::length(normal) > 0)) return kNowhere;
     normal = glm::normalize(normal);
     // A plane of space with this normal is one of (u, v, w) with that of its products with where u, v and w go.
     const glm::dvec3 in_parameters(glm::dot(normal, plane.axis_u()), glm::dot(normal, plane.axis_v()),
@@ -377,11 +378,12 @@ void find_anchor(const Deformation& bump, const std::vector<std::unique_ptr<Defo
     anchor[1] = bump.has_depth() ? bump.extent_w : std::min(bump.extent.x, bump.extent.y);
     for (int c = 0; c < 4; ++c) anchor[2 + c] = turn[c];
     for (int c = 0; c < 3; ++c) anchor[6 + c] = vector[c];
+    return place.apart;
 }
 
-void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
-                const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
-                const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]) {
+double find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]) {
     struct Near {
         double apart;
         std::size_t mesh, point;
@@ -398,7 +400,7 @@ void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>&
             if (const double apart = glm::dot(off, off); std::isfinite(apart)) near.push_back({apart, m, i});
         }
     }
-    if (near.empty()) return;
+    if (near.empty()) return kNowhere;
     constexpr std::size_t kPoints = 12;
     const std::size_t count = std::min(kPoints, near.size());
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
@@ -426,7 +428,7 @@ void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>&
         vp += weight * off.y * place;
     }
     const double determinant = uu * vv - uv * uv;
-    if (!(determinant > 1e-12 * uu * vv)) return;
+    if (!(determinant > 1e-12 * uu * vv)) return kNowhere;
     const glm::dvec3 d = (vv * up - uv * vp) / determinant, e = (uu * vp - uv * up) / determinant;
     glm::dvec3 moved;
     deformed[near[0].mesh]->GetPoint(static_cast<vtkIdType>(near[0].point), &moved.x);
@@ -436,6 +438,7 @@ void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>&
         frame[3 + c] = d[c];
         frame[6 + c] = e[c];
     }
+    return near[0].apart;
 }
 
 PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
@@ -466,7 +469,7 @@ PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<D
             }
             here.found = std::isfinite(here.parameters.x + here.parameters.y);
             if (!here.found) return;
-            nearest = square;
+            nearest = here.square = square;
             place = here;
         };
         for_each_surface_cell(undeformed[m], [&](vtkIdType count, const vtkIdType* p) {
@@ -476,11 +479,11 @@ PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<D
     return place;
 }
 
-std::optional<glm::dvec3> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
-                                       const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
-                                       const std::vector<vtkSmartPointer<vtkPointSet>>& deformed) {
+std::optional<MetPoint> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
+                                     const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                                     const std::vector<vtkSmartPointer<vtkPointSet>>& deformed) {
     const double beside = 1e-10 * glm::length(to - from);  // of an edge, whose two triangles round apart
-    std::optional<glm::dvec3> found;
+    std::optional<MetPoint> found;
     double first = std::numeric_limits<double>::infinity();
     vtkNew<vtkTriangle> triangle;
     for (std::size_t m = 0; m < std::min(undeformed.size(), deformed.size()); ++m) {
@@ -499,7 +502,7 @@ std::optional<glm::dvec3> find_on_line(const glm::dvec3& from, const glm::dvec3&
                     !(along < first))
                     continue;
                 first = along;
-                found = met;
+                found = {met, along};
             }
         });
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -35,23 +36,35 @@ void draw_overlay(const std::vector<anamorph::Deformation>& list, const std::vec
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay);
 
+/// What the functions below return where they find nothing; else it is the less the better what they found is, so that
+/// ranks can tell whose is the best.
+inline constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
 /// Finds how far from a plane deformed meshes are at the centre of a bump, of several points where it moves them most, and at its
 /// centre plus its extent near by in depth: at the points of the meshes that are nearest. What is not found is left as it is.
-void find_heights(const anamorph::Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
-                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
-                  const anamorph::ParameterPlane& plane, double (&heights)[2]);
+double find_heights(const anamorph::Deformation& bump,
+                    const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                    const std::vector<vtkSmartPointer<vtkPointSet>>& deformed,
+                    const anamorph::ParameterPlane& plane, double (&heights)[2]);
 
 /// Finds the plane that meshes touch at parameters, moved as their nearest point is: the point that it has at (u, v) = (0, 0), and its derivatives by u and v.
 /// Fitted to the points that are nearest in (u, v), so that on flat meshes it is exact but for rounding. What is not found is left as it is.
-void find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
-                const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
-                const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]);
+double find_frame(glm::dvec2 at, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                  const std::vector<vtkSmartPointer<vtkPointSet>>& deformed, double (&frame)[9]);
 
 /// What of an undeformed surface is at a point of the deformed one.
 struct PickedPlace {
     glm::dvec2 parameters{0.0};
-    glm::dvec3 point{0.0};  ///< undeformed
+    glm::dvec3 point{0.0};     ///< undeformed
+    double square = kNowhere;  ///< of the distance between the two points
     bool found = false;
+};
+
+/// Where a line meets a surface: the point, and how far along, 0 at its beginning and 1 at its end.
+struct MetPoint {
+    glm::dvec3 point;
+    double along;
 };
 
 /// Finds what is at the point of the deformed meshes that is nearest to one in space; between points of a triangle in their shares.
@@ -60,15 +73,16 @@ PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<D
                        const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
 
 /// Finds the point where a line first meets the deformed meshes; none if it misses them.
-std::optional<glm::dvec3> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
-                                       const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
-                                       const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
+std::optional<MetPoint> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
+                                     const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                                     const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
 
 /// Finds the part of undeformed meshes that is over the centre of a bump, of several the one nearest to it in depth: the depth there, an
 /// extent in depth, the turn that lays the depth along the normal (a mean of those of the cells at the corners of that part), and V along it,
 /// or against it where V is. What is not found is left as it is.
-void find_anchor(const anamorph::Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
-                 const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
-                 const anamorph::ParameterPlane& plane, double (&anchor)[9]);
+double find_anchor(const anamorph::Deformation& bump,
+                   const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
+                   const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
+                   const anamorph::ParameterPlane& plane, double (&anchor)[9]);
 
 }  // namespace anamorph_vtk

@@ -108,6 +108,31 @@ std::vector<Numbers> table_of(vtkTable* table, vtkMultiProcessController* contro
     }
 }
 
+/// Gives all ranks the numbers of the one that is least apart; those of the first where none has any.
+void take_best(double* numbers, std::size_t count, double apart, vtkMultiProcessController* controller) {
+    if (!distributed(controller)) return;
+    std::vector<double> own(numbers, numbers + count);
+    own.push_back(apart);
+    const auto ranks = static_cast<std::size_t>(controller->GetNumberOfProcesses());
+    std::vector<double> all(ranks * own.size());
+    controller->AllGather(own.data(), all.data(), static_cast<vtkIdType>(own.size()));
+    const double* best = all.data();
+    for (std::size_t r = 1; r < ranks; ++r)
+        if (const double* const other = &all[r * own.size()]; other[count] < best[count]) best = other;
+    std::copy_n(best, count, numbers);
+}
+
+/// A deformation of a filter's own list; none beyond it, or after an error.
+std::optional<Deformation> deformation_of(vtkAnamorphDeform* filter, int position) {
+    const std::vector<Numbers>& all = filter->GetDeformationList()->GetAll();
+    std::optional<Deformation> found;
+    if (position < 0 || static_cast<std::size_t>(position) >= all.size()) return found;
+    anamorph_vtk::guarded(filter, [&] {
+        found = anamorph_vtk::checked_entries({all[static_cast<std::size_t>(position)]})[0].deformation;
+    });
+    return found;
+}
+
 /// The unit of fixed point for a list: fine enough that rounding is far below the cutoff, coarse enough for
 /// the list to stay in range, and one of few, so that an edit hardly ever changes it.
 double resolution_for(const std::vector<Deformation>& list) {
@@ -341,23 +366,11 @@ std::string vtkAnamorphDeform::GetDeformationName(int position) {
     return this->DeformationList->GetName(position);
 }
 
-double* vtkAnamorphDeform::GetSelectedAnchor() {
-    std::fill_n(this->SelectedAnchor, 9, 0.0);
-    const std::vector<Numbers>& all = this->DeformationList->GetAll();
-    const auto position = static_cast<std::size_t>(this->SelectedDeformation);
-    if (position >= all.size() || !this->Meshes->on_plane) return this->SelectedAnchor;
-    anamorph_vtk::guarded(this, [&] {
-        const Deformation bump = anamorph_vtk::checked_entries({all[position]})[0].deformation;
-        anamorph_vtk::find_anchor(bump, this->Meshes->meshes, this->Meshes->undeformed,
-                                  this->Meshes->used_plane, this->SelectedAnchor);
-    });
-    return this->SelectedAnchor;
-}
-
 int vtkAnamorphDeform::AnchorDeformation(int position) {
     const int selected = this->SelectedDeformation;
     this->SetSelectedDeformation(position);
-    const double* anchor = this->GetSelectedAnchor();
+    this->FindAnchor();
+    const double* anchor = this->SelectedAnchor;
     this->SelectedDeformation = selected;
     const double* numbers = this->GetDeformation(position);
     if (anchor[1] == 0) {
@@ -518,58 +531,90 @@ vtkPolyData* vtkAnamorphDeform::GetOverlay() {
     return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
 }
 
-double* vtkAnamorphDeform::GetSelectedHeights() {
+void vtkAnamorphDeform::FindHeights() {
+    const Kept& kept = *this->Meshes;
     std::fill_n(this->SelectedHeights, 2, 0.0);
-    const std::vector<Numbers>& all = this->DeformationList->GetAll();
-    const int position = this->SelectedDeformation;
-    if (position < 0 || position >= static_cast<int>(all.size()) || !this->Meshes->on_plane)
-        return this->SelectedHeights;
-    anamorph_vtk::guarded(this, [&] {
-        const Deformation bump =
-            anamorph_vtk::checked_entries({all[static_cast<std::size_t>(position)]})[0].deformation;
-        anamorph_vtk::find_heights(bump, this->Meshes->meshes, this->Meshes->deformed,
-                                   this->Meshes->used_plane, this->SelectedHeights);
-    });
+    double apart = anamorph_vtk::kNowhere;
+    const std::optional<Deformation> bump =
+        kept.on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
+    if (bump)
+        apart = anamorph_vtk::find_heights(*bump, kept.meshes, kept.deformed, kept.used_plane,
+                                           this->SelectedHeights);
+    take_best(this->SelectedHeights, 2, apart, this->Controller);
+}
+
+void vtkAnamorphDeform::FindFrame() {
+    const Kept& kept = *this->Meshes;
+    std::fill_n(this->SelectedFrame, 9, 0.0);
+    double apart = anamorph_vtk::kNowhere;
+    const std::optional<Deformation> bump =
+        kept.on_plane ? std::nullopt : deformation_of(this, this->SelectedDeformation);
+    if (bump)
+        apart = anamorph_vtk::find_frame(bump->center, kept.meshes, kept.undeformed, kept.deformed,
+                                         this->SelectedFrame);
+    take_best(this->SelectedFrame, 9, apart, this->Controller);
+}
+
+void vtkAnamorphDeform::FindAnchor() {
+    const Kept& kept = *this->Meshes;
+    std::fill_n(this->SelectedAnchor, 9, 0.0);
+    double apart = anamorph_vtk::kNowhere;
+    const std::optional<Deformation> bump =
+        kept.on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
+    if (bump)
+        apart = anamorph_vtk::find_anchor(*bump, kept.meshes, kept.undeformed, kept.used_plane,
+                                          this->SelectedAnchor);
+    take_best(this->SelectedAnchor, 9, apart, this->Controller);
+}
+
+void vtkAnamorphDeform::FindSelected() {
+    this->FindHeights();
+    this->FindFrame();
+}
+
+double* vtkAnamorphDeform::GetSelectedHeights() {
+    if (!anamorph_vtk::distributed(this->Controller)) this->FindHeights();
     return this->SelectedHeights;
 }
 
 double* vtkAnamorphDeform::GetSelectedFrame() {
-    std::fill_n(this->SelectedFrame, 9, 0.0);
-    const std::vector<Numbers>& all = this->DeformationList->GetAll();
-    const int position = this->SelectedDeformation;
-    if (position < 0 || position >= static_cast<int>(all.size()) || this->Meshes->on_plane)
-        return this->SelectedFrame;
-    const Numbers& numbers = all[static_cast<std::size_t>(position)];
-    anamorph_vtk::find_frame({numbers[0], numbers[1]}, this->Meshes->meshes, this->Meshes->undeformed,
-                             this->Meshes->deformed, this->SelectedFrame);
+    if (!anamorph_vtk::distributed(this->Controller)) this->FindFrame();
     return this->SelectedFrame;
 }
 
+double* vtkAnamorphDeform::GetSelectedAnchor() {
+    if (!anamorph_vtk::distributed(this->Controller)) this->FindAnchor();
+    return this->SelectedAnchor;
+}
+
 void vtkAnamorphDeform::PickAt(double x, double y, double z) {
-    this->PickedPoint[0] = x;
-    this->PickedPoint[1] = y;
-    this->PickedPoint[2] = z;
+    this->Pick({x, y, z}, std::nullopt);
 }
 
 void vtkAnamorphDeform::PickOnLine(double from_x, double from_y, double from_z, double to_x, double to_y,
                                    double to_z) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const glm::dvec3 met = anamorph_vtk::find_on_line({from_x, from_y, from_z}, {to_x, to_y, to_z},
-                                                      this->Meshes->undeformed, this->Meshes->deformed)
-                               .value_or(glm::dvec3(none));
-    this->PickAt(met.x, met.y, met.z);
+    const auto met = anamorph_vtk::find_on_line({from_x, from_y, from_z}, {to_x, to_y, to_z},
+                                                this->Meshes->undeformed, this->Meshes->deformed)
+                         .value_or(anamorph_vtk::MetPoint{glm::dvec3(none), none});
+    this->Pick({met.point.x, met.point.y, met.point.z}, met.along);
+}
+
+void vtkAnamorphDeform::Pick(const std::array<double, 3>& at, std::optional<double> distance) {
+    const anamorph_vtk::PickedPlace place = anamorph_vtk::find_place(
+        {at[0], at[1], at[2]}, this->Meshes->meshes, this->Meshes->undeformed, this->Meshes->deformed);
+    const double depth =
+        place.found && this->Meshes->on_plane ? this->Meshes->used_plane.depth(place.point) : 0;
+    // The point, u, v, w, and 1 where there is one.
+    double picked[7] = {
+        at[0], at[1], at[2], place.parameters.x, place.parameters.y, depth, place.found ? 1.0 : 0.0};
+    take_best(picked, 7, place.found ? distance.value_or(place.square) : anamorph_vtk::kNowhere,
+              this->Controller);
+    std::copy_n(picked, 3, this->PickedPoint);
+    std::copy_n(picked + 3, 4, this->PickedParameters);
 }
 
 double* vtkAnamorphDeform::GetPickedParameters() {
-    std::fill_n(this->PickedParameters, 4, 0.0);
-    const double* const at = this->PickedPoint;
-    const anamorph_vtk::PickedPlace place = anamorph_vtk::find_place(
-        {at[0], at[1], at[2]}, this->Meshes->meshes, this->Meshes->undeformed, this->Meshes->deformed);
-    if (!place.found) return this->PickedParameters;
-    this->PickedParameters[0] = place.parameters.x;
-    this->PickedParameters[1] = place.parameters.y;
-    if (this->Meshes->on_plane) this->PickedParameters[2] = this->Meshes->used_plane.depth(place.point);
-    this->PickedParameters[3] = 1;
     return this->PickedParameters;
 }
 

@@ -42,9 +42,11 @@
 #ifndef vtkAnamorphDeform_h
 #define vtkAnamorphDeform_h
 
-#include <memory>  // for the implementation
-#include <string>  // for the formulas
-#include <vector>  // for names
+#include <array>     // for what is picked
+#include <memory>    // for the implementation
+#include <optional>  // for what is picked
+#include <string>    // for the formulas
+#include <vector>    // for names
 
 #include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkPassInputTypeAlgorithm.h"
@@ -105,6 +107,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * Anchors a deformation to the undeformed surface of the last execution, on the plane: to what is there over
      * its centre, of several parts the one nearest in depth. It gets its depth, a frame whose third direction is the surface's normal, an extent in depth, the lesser of the two along
      * the plane, if it has none, and V, whose length stays, along the normal, or against it where V is. Returns 1, or 0 after an error.
+     * All ranks of the controller call it together, and take the best of all their parts.
      */
     int AnchorDeformation(int position);
     ///@}
@@ -311,26 +314,32 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     /**
      * For handles of hosts: how far from the plane of (u, v) the deformed surface is at the centre, and at the centre plus the extent,
      * of a deformation of the filter's own list, by the last execution; at the centre, of several points over each other, where the
-     * deformation moves it most. 0 where no point of this rank is moved by it, and for texture coordinates. Selecting another
+     * deformation moves it most. 0 where no point is moved by it, and for texture coordinates. Selecting another
      * deformation does not make the filter execute. The pointer is valid until the next call.
+     *
+     * Where the controller has several ranks, this is what FindSelected() found last, and the anchor what FindAnchor() did, which all of
+     * them call together: on the part of the rank that has the best.
      *
      * For texture coordinates the frame is the plane that touches the surface at the deformation's centre, moved to where the deformed
      * surface is: nine numbers, the point at (u, v) = (0, 0) of it, and how far space goes where u and where v goes 1, fitted to
-     * the points of this rank that are nearest in (u, v). It is all 0 where there are none, and for the plane.
+     * the points that are nearest in (u, v). It is all 0 where there are none, and for the plane.
      */
     void SetSelectedDeformation(int position) { this->SelectedDeformation = position < 0 ? 0 : position; }
     int GetSelectedDeformation() { return this->SelectedDeformation; }
+    void FindSelected();
     double* GetSelectedHeights() VTK_SIZEHINT(2);
     double* GetSelectedFrame() VTK_SIZEHINT(9);
     /**
      * What AnchorDeformation() would make of the selected deformation: center_w, extent_w, the orientation and V; all 0 where there is no
      * surface near it.
      */
+    void FindAnchor();
     double* GetSelectedAnchor() VTK_SIZEHINT(9);
     /**
-     * What is at the point of the deformed surface that is nearest to PickedPoint, by the last execution and on this rank: u, v, the
-     * depth w from the plane (0 for texture coordinates), and 1; all 0 where there is no surface. PickOnLine() takes the point where a
-     * line first meets the deformed surface, or none (not a number). Picking does not make the filter execute.
+     * What is at the point of the deformed surface of the last execution that is nearest to the one given to PickAt(): u, v, the depth w
+     * from the plane (0 for texture coordinates), and 1; all 0 where there is no surface. PickOnLine() takes the point where a line
+     * first meets the deformed surface, or none (not a number). All ranks of the controller call these two together, and find
+     * the nearest of all their parts. Picking does not make the filter execute.
      */
     void PickAt(double x, double y, double z);
     void PickOnLine(double from_x, double from_y, double from_z, double to_x, double to_y, double to_z);
@@ -360,6 +369,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void Execute(vtkInformationVector** inputs, vtkInformationVector* outputs);
     void SetText(std::string& member, const char* text);
     void NameDeformations();
+    void FindHeights();
+    void FindFrame();
+    void Pick(const std::array<double, 3>& at, std::optional<double> distance);
 
     vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
     vtkSmartPointer<vtkDoubleArray> AllDeformations, AllDepths, AllFrames;

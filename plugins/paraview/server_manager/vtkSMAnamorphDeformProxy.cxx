@@ -444,6 +444,7 @@ void vtkSMAnamorphDeformProxy::PostUpdateData(bool using_cache) {
     this->Mouse->watch(this);
     if (!updated || !this->DraggedRow.empty()) return;
     const WhileHeld step(this->InStep);
+    this->Find("FindSelected");
     this->TakeUsedPlane();
     const bool moved = this->TakeHeights();
     const std::optional<Frame> shown = this->Pending->frame;
@@ -484,6 +485,13 @@ bool vtkSMAnamorphDeformProxy::TipIsShown() {
     for (unsigned int c = 0; c < 3; ++c)
         if ((*tip)[c] != (*center)[c] + (*vector)[c]) return false;
     return true;
+}
+
+/// Lets all ranks of the server find together what is then told of the selected deformation.
+void vtkSMAnamorphDeformProxy::Find(const char* what) {
+    vtkClientServerStream stream;
+    stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << what << vtkClientServerStream::End;
+    this->ExecuteStream(stream);
 }
 
 /// The heights of the handles of the last update. True if they are others than before.
@@ -583,6 +591,8 @@ void vtkSMAnamorphDeformProxy::SelectBump(int position) {
         vtkSMPropertyHelper(this, "SelectedDeformation").Set(position);
         this->UpdateVTKObjects();
         const WhileHeld step(this->InStep);
+        this->Find("FindSelected");
+        if (this->UsedMode != 0) this->TakeUsedPlane();  // that at the bump
         this->TakeHeights();
         *this->Pending = Edits();
         this->ShowHandles(true);
@@ -632,6 +642,7 @@ void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* n
 
 void vtkSMAnamorphDeformProxy::AnchorSelected() {
     this->UpdatePipeline();
+    this->Find("FindAnchor");
     this->UpdatePropertyInformation(this->GetProperty("SelectedAnchor"));
     const std::vector<double> anchor = numbers_of(this, "SelectedAnchor");
     std::vector<double> table = numbers_of(this, "Bumps");

@@ -80,6 +80,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void Resolve();
     void ShowHandles(bool all);
     void TakeUsedPlane();
+    void Find(const char* what);
     bool TakeHeights();
     bool TipIsShown();
     void ImportDeformations(const char* file);
