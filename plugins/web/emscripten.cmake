@@ -24,8 +24,9 @@ macro(anamorph_web_package method name)
 endmacro()
 cmake_language(SET_DEPENDENCY_PROVIDER anamorph_web_package SUPPORTED_METHODS FIND_PACKAGE)
 
-# Exceptions are WebAssembly's own: those that go through JavaScript cost every call. Highway has no doubles in WebAssembly's vectors,
-# but its plain code for vectors of 128 bits (EMU128) is made of them by the compiler.
+# Exceptions are WebAssembly's own: those that go through JavaScript cost every call.
 add_compile_options(-fwasm-exceptions -msimd128)
 add_link_options(-fwasm-exceptions)
-add_compile_definitions(HWY_COMPILE_ONLY_EMU128)
+
+# The page's pictures are red, green and blue of 8 bits, so loops over other texels are left out (image/texel_types.h).
+add_compile_definitions(ANAMORPH_SMALL)

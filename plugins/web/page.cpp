@@ -2,6 +2,7 @@
 #include "page.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "anamorph/error.h"
 #include "anamorph/image/picture.h"
@@ -66,8 +67,11 @@ void Page::take_image(const std::uint8_t* rgba, const Size& size) {
     m_over.reset();
     m_source_pixels.resize(count * kChannels);
     m_source_size = size;
-    for (std::size_t i = 0; i < count; ++i)
-        std::copy_n(rgba + 4 * i, kChannels, m_source_pixels.data() + kChannels * i);
+    std::uint8_t* to = m_source_pixels.data();
+    for (std::size_t i = 0; i < count; ++i, to += kChannels) {
+        const std::uint8_t* const from = rgba + 4 * i;
+        to[0] = from[0], to[1] = from[1], to[2] = from[2];
+    }
     m_image =
         std::make_unique<MemorySource>(packed_view(reinterpret_cast<const std::byte*>(m_source_pixels.data()),
                                                    PixelType::uint8, size.width, size.height, kChannels));
@@ -127,8 +131,8 @@ void Page::draw(int y0, int y1, std::uint8_t* rgba) const {
                          packed_view(packed, PixelType::uint8, m_size.width, y1 - y0, kChannels), serial_for))
         throw Error("the image cannot be read");
     for (std::size_t i = width * static_cast<std::size_t>(y1 - y0); i-- > 0;) {
-        const std::uint8_t r = rgba[3 * i], g = rgba[3 * i + 1], b = rgba[3 * i + 2];
-        rgba[4 * i] = r, rgba[4 * i + 1] = g, rgba[4 * i + 2] = b, rgba[4 * i + 3] = 255;
+        const std::uint8_t pixel[] = {rgba[3 * i], rgba[3 * i + 1], rgba[3 * i + 2], 255};
+        std::memcpy(rgba + 4 * i, pixel, sizeof(pixel));
     }
 }
 

@@ -10,8 +10,7 @@ const clamp = (x, least, most) => Math.min(most, Math.max(least, x));
 class Workers {
   static async start(count) {
     const packed = Uint8Array.from(atob($("wasm").textContent.trim()), (c) => c.charCodeAt(0));
-    const unpacked = new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")));
-    const wasm = await WebAssembly.compile(await unpacked.arrayBuffer());
+    const wasm = await WebAssembly.compile(unpackLzma(packed, Number($("wasm").dataset.bytes)));
     const url = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
     const workers = new Workers();
     workers.all = Array.from({ length: count }, () => new Worker(url));
@@ -122,10 +121,16 @@ async function draw() {
   state.wanted = true;
   if (state.busy || !state.source) return;
   state.busy = true;
+  const next = () => {
+    if (!state.wanted) return null;
+    state.wanted = false;
+    return askFor(state.moving ? movingRecipe() : recipe());
+  };
   try {
-    while (state.wanted) {
-      state.wanted = false;
-      await drawOnce(state.moving ? movingRecipe() : recipe()).catch(report);
+    for (let asked = next(); asked; asked = asked || next()) {
+      const view = await asked;
+      asked = next(); // is drawn while this one is shown
+      show(view);
       await new Promise((done) => requestAnimationFrame(done));
     }
   } finally {
@@ -134,19 +139,26 @@ async function draw() {
   if (!state.moving && state.shown && !state.source.isPreview) settle();
 }
 
-async function drawOnce(text) {
+/// What the workers draw of a recipe, or why they do not.
+async function askFor(recipe) {
   const started = performance.now();
-  const parts = await workers.askAll({ ask: "view", recipe: text });
-  const took = performance.now() - started;
-  const { width, height, says } = parts[0], rgba = new Uint8ClampedArray(4 * width * height);
-  for (const part of parts) rgba.set(part.pixels, 4 * width * part.y0);
-  const view = $("view");
+  try {
+    return { recipe, parts: await workers.askAll({ ask: "view", recipe }), took: performance.now() - started };
+  } catch (error) {
+    return { error };
+  }
+}
+
+function show({ recipe, parts, took, error }) {
+  if (error) return report(error);
+  const { width, height, says } = parts[0], view = $("view");
   if (view.width !== width || view.height !== height) Object.assign(view, { width, height });
+  const rgba = new Uint8ClampedArray(4 * width * height);
+  for (const part of parts) rgba.set(part.pixels, 4 * width * part.y0);
   view.getContext("2d", { alpha: false }).putImageData(new ImageData(rgba, width, height), 0, 0);
-  state.shown = { recipe: text, rgba, width, height, says, took, planning: Math.max(...parts.map((p) => p.planning)) };
+  state.shown = { recipe, rgba, width, height, says, took, planning: Math.max(...parts.map((p) => p.planning)) };
   $("problem").hidden = true;
   showFacts();
-  return state.shown;
 }
 
 function report(error) {
@@ -574,15 +586,18 @@ async function measure(count = 60) {
   button.disabled = true;
   while (state.busy) await new Promise((done) => setTimeout(done, 20));
   state.busy = true;
+  const askForTurned = (i) => {
+    $("yaw").value = turnedDegrees(yaw + (360 * i) / count);
+    return askFor(recipe());
+  };
   const started = performance.now();
-  try {
-    for (let i = 0; i < count; ++i) {
-      $("yaw").value = turnedDegrees(yaw + (360 * i) / count);
-      times.push((await drawOnce(recipe())).took);
-      await new Promise((done) => requestAnimationFrame(done));
-    }
-  } catch (error) {
-    report(error);
+  for (let i = 0, asked = askForTurned(0); i < count; ++i) {
+    const view = await asked;
+    if (i + 1 < count) asked = askForTurned(i + 1);
+    show(view);
+    if (view.error) break;
+    times.push(view.took);
+    await new Promise((done) => requestAnimationFrame(done));
   }
   const rate = (1000 * count) / (performance.now() - started);
   times.sort((a, b) => a - b);

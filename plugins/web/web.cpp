@@ -17,7 +17,7 @@
 namespace anamorph::web {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 Page& page() {
     static Page page;

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// node node.cjs FOLDER WORKER_JS HASHES: the core as WebAssembly, from the folder where it was built, draws the views of the page's list
-// with the hashes of the desktop program, at once and in parts; what is wrong is refused in words.
+// node node.cjs FOLDER WORKER_JS HASHES PAGE: the core as WebAssembly, from the folder where it was built, draws the views of the page's
+// list with the hashes of the desktop program, at once and in parts; what is wrong is refused in words. The page has that core.
 "use strict";
 const assert = require("node:assert");
 const fs = require("node:fs");
 const path = require("node:path");
 
 async function main() {
-  const [folder, worker, hashes] = process.argv.slice(2).map((p) => path.resolve(p));
+  const [folder, worker, hashes, page] = process.argv.slice(2).map((p) => path.resolve(p));
   const { Core, rowsOf } = require(worker);
-  const core = new Core(await require(path.join(folder, "anamorph.js"))({ wasmBinary: fs.readFileSync(path.join(folder, "anamorph.wasm")) }));
+  const { unpackLzma } = require(path.join(path.dirname(worker), "lzma.js"));
+  const wasm = fs.readFileSync(path.join(folder, "anamorph.wasm"));
+  const [, bytes, text] = /<script id="wasm"[^>]* data-bytes="(\d+)">([^<]*)</.exec(fs.readFileSync(page, "utf8"));
+  const packed = Buffer.from(text, "base64");
+  assert(wasm.equals(unpackLzma(packed, Number(bytes))), "the page has another core");
+  assert.throws(() => unpackLzma(packed.subarray(0, packed.length / 2), Number(bytes)), /ends too soon|damaged/);
+  const core = new Core(await require(path.join(folder, "anamorph.js"))({ wasmBinary: wasm }));
 
   const { projections, operations } = core.ask("describe");
   assert(projections.length >= 20 && operations.pano.keys.tol.default === "0.01");

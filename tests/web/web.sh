@@ -12,5 +12,5 @@ cd "$(dirname "$0")/../.."
 # Debian's emscripten finds Debian's acorn with Debian's node alone.
 export NODE_PATH=/usr/share/nodejs
 cmake --preset web && cmake --build --preset web -j "$(nproc)"
-node tests/web/node.cjs build/web/plugins/web plugins/web/worker.js plugins/web/hashes.txt
+node tests/web/node.cjs build/web/plugins/web plugins/web/worker.js plugins/web/hashes.txt build/web/anamorph.html
 /usr/bin/python3 tests/web/test_page.py build/web/anamorph.html "$1/core/command/anamorph" build/web/shots

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian's compiler for another processor (ANAMORPH_CROSS, as Debian calls that machine's triplet), and the libraries that tests/cross.sh
+# unpacks.
+set(triplet $ENV{ANAMORPH_CROSS})
+string(REGEX REPLACE "-.*" "" processor ${triplet})
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR ${processor})
+set(CMAKE_C_COMPILER ${triplet}-gcc)
+set(CMAKE_CXX_COMPILER ${triplet}-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE ${triplet})
+if(processor STREQUAL "i686")
+    set(CMAKE_LIBRARY_ARCHITECTURE i386-linux-gnu)
+endif()
+# Programs find all of that machine's libraries, and what starts them, where they are here.
+if(processor STREQUAL "aarch64")
+    set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64)
+    set(loader ld-linux-aarch64.so.1)
+else()
+    set(loader ld-linux.so.2)
+endif()
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--dynamic-linker=/usr/${triplet}/lib/${loader} -Wl,-rpath,/usr/${triplet}/lib")
+set(CMAKE_FIND_ROOT_PATH $ENV{ANAMORPH_CROSS_ROOT})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)

@@ -1,0 +1,50 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Usage: tests/cross.sh arm64|i386 FOLDER [all]
+# Compiles the core for arm64, or for x86 of 32 bits, into FOLDER, and draws the pictures of tests/core/test_picture_hash.cpp there (by qemu,
+# where this machine cannot): they have the hashes of every other processor. With "all" all tests of the core are run. Debian's libraries of
+# that machine are unpacked beside it; this one gets none. Needs section [arm64] or [i386] of packages.txt.
+set -euo pipefail
+usage() {
+    echo "usage: cross.sh arm64|i386 FOLDER [all]" >&2
+    exit 1
+}
+[ $# -eq 2 ] || { [ $# -eq 3 ] && [ "$3" = all ]; } || usage
+case "$1" in
+    arm64) ANAMORPH_CROSS=aarch64-linux-gnu run=(qemu-aarch64) ;;
+    i386) ANAMORPH_CROSS=i686-linux-gnu run=() ;;
+    *) usage ;;
+esac
+machine="$1"
+source="$(cd "$(dirname "$0")/.." && pwd)"
+mkdir -p "$2"
+folder="$(cd "$2" && pwd)"
+export ANAMORPH_CROSS ANAMORPH_CROSS_ROOT="$folder/root"
+
+# With lists of its own, of both kinds of machine.
+fetch() {
+    local work="$folder/fetch" package packages=()
+    for package in gemmi-dev libgmock-dev libgtest-dev libhwy-dev libhwy1 libpugixml-dev libpugixml1v5 libxxhash-dev; do
+        packages+=("$package:$machine")
+    done
+    rm -rf "$work" && mkdir -p "$work"/{lists,cache/archives}/partial && cd "$work"
+    local options=(-q -o "Dir::State::lists=$work/lists" -o "Dir::Cache=$work/cache" -o "APT::Sandbox::User="
+        -o "APT::Architectures::=amd64" -o "APT::Architectures::=$machine")
+    # A list that cannot be read is missed below, if one of the packages is in it.
+    apt-get "${options[@]}" update || true
+    apt-get "${options[@]}" download "${packages[@]}" libglm-dev nlohmann-json3-dev
+    for package in *.deb; do dpkg-deb -x "$package" "$work/root"; done
+    mv "$work/root" "$ANAMORPH_CROSS_ROOT"
+    cd "$source" && rm -rf "$work"
+}
+[ -e "$ANAMORPH_CROSS_ROOT/usr" ] || fetch
+
+cmake -S "$source" -B "$folder/build" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$source/tests/cross.cmake" -DCMAKE_BUILD_TYPE=Release \
+    -DANAMORPH_OIIO=OFF -DANAMORPH_COMMAND=OFF
+if [ $# -eq 2 ]; then
+    cmake --build "$folder/build" -j "$(nproc)" --target anamorph_hash_tests
+    "${run[@]}" "$folder/build/tests/core/anamorph_hash_tests"
+else
+    cmake --build "$folder/build" -j "$(nproc)" --target anamorph_core_tests
+    ctest --test-dir "$folder/build" -j "$(nproc)" --no-tests=error -L core
+fi
