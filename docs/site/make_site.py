@@ -1,12 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""The documentation as a site that is read and searched without a network: make_site.py SOURCES FOLDER
+"""The documentation as a site that is read and searched without a network: make_site.py SOURCES FOLDER [--drawn DRAWN] [--page PAGE]
 
 Copies the pages of SOURCES, and what these show or link to, beside FOLDER, and has MkDocs make the site FOLDER of them, with Material
-(Debian: mkdocs, mkdocs-material). Fails where a link leads nowhere.
+(Debian: mkdocs, mkdocs-material). With DRAWN, which draw.py and reference.py made, lines that draw a picture have it below them, the gallery has
+those of all pages, and there is a reference with pictures. Carries the PAGE that draws (docs/web.md), where that was built. Fails where a link
+leads nowhere.
 """
+import argparse
+import html
 import html.parser
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -40,6 +45,10 @@ def pages():
     return [page for section in PAGES.values() for page in section]
 
 
+def extra_pages(section, staged):
+    return ["docs/reference.md"] if section == "Pictures" and (staged / "docs/reference.md").exists() else []
+
+
 def title_of(path):
     return re.search(r"^# (.+)$", path.read_text(encoding="utf-8"), re.M)[1].replace("`", "")
 
@@ -70,12 +79,52 @@ def listing(folder, sources):
             + "".join(f'<li><a href="{name}">{name}</a>' for name in names) + "</ul>")
 
 
-def configuration(sources, staged, folder):
+def figure(picture, caption):
+    return f'<figure style="display:inline-block;vertical-align:top;margin:0 1em 1em 0;max-width:20em"><img src="{picture}" alt="" loading="lazy">{caption}</figure>'
+
+
+def show_drawn(staged, drawn):
+    """Puts what lines have drawn below their blocks, where a page does not show it already, and all of it into the gallery."""
+    shutil.copytree(drawn / "shown", staged / "drawn")
+    of_page, gallery = {}, ["", "## Of the other pages", ""]
+    for page, line, text, name in json.loads((drawn / "pictures.json").read_text(encoding="utf-8")):
+        if not (drawn / "shown" / name).exists():
+            continue
+        up = "../" * page.count("/")
+        of_page.setdefault(page, {}).setdefault(line, []).append(figure(f"{up}drawn/{name}", ""))
+        if page != "docs/gallery.md":
+            title = html.escape(title_of(staged / page))
+            link = os.path.relpath(page.replace("README.md", "index.md"), "docs").replace(".md", ".html")
+            gallery.append(figure(f"../drawn/{name}", f'<figcaption><code>{html.escape(text)}</code><br><a href="{link}">{title}</a></figcaption>'))
+    for page, blocks in of_page.items():
+        path = staged / page
+        lines = path.read_text(encoding="utf-8").split("\n")
+        for first in sorted(blocks, reverse=True):
+            end = first - 1
+            while end < len(lines) and (lines[end].startswith("    ") or not lines[end].strip()):
+                end += 1
+            if end == len(lines) or not lines[end].startswith("!["):
+                lines[end:end] = ["", *blocks[first], ""]
+        path.write_text("\n".join(lines), encoding="utf-8")
+    with (staged / "docs/gallery.md").open("a", encoding="utf-8") as file:
+        file.write("\n".join(gallery) + "\n")
+
+
+def carry(page, staged):
+    """The page that draws, as docs/anamorph.html, and a link to it below the title of docs/web.md."""
+    shutil.copyfile(page, staged / "docs/anamorph.html")
+    document = staged / "docs/web.md"
+    text = document.read_text(encoding="utf-8")
+    title = re.search(r"^# .+$", text, re.M)[0]
+    document.write_text(text.replace(title, f"{title}\n\n**[Open the page](anamorph.html)**", 1), encoding="utf-8")
+
+
+def configuration(staged, folder):
     return {
         "site_name": "Anamorph", "docs_dir": str(staged), "site_dir": str(folder), "use_directory_urls": False,
         "theme": {"name": "material", "font": False, "features": ["navigation.tabs", "navigation.sections", "search.highlight"],
                   "palette": {"primary": "indigo"}},
-        "nav": [{section: [{title_of(sources / page): page} for page in pages]} for section, pages in PAGES.items()],
+        "nav": [{section: [{title_of(staged / page): page} for page in pages + extra_pages(section, staged)]} for section, pages in PAGES.items()],
         "markdown_extensions": ["tables", "fenced_code", {"toc": {"permalink": True, "slugify": None}}],
         "plugins": ["search"], "strict": True, "extra_javascript": ["offline.js"],
     }
@@ -124,14 +173,20 @@ def broken_links(folder):
     return broken
 
 
-def make_site(sources, folder):
+def make_site(sources, folder, drawn=None, page=None):
     staged = folder.with_name(folder.name + "-pages")
     shutil.rmtree(staged, ignore_errors=True)
     copy(sources, staged)
+    if drawn:
+        show_drawn(staged, drawn)
+        shutil.copytree(drawn / "words", staged / "words")
+        shutil.copyfile(drawn / "reference.md", staged / "docs/reference.md")
+    if page and page.exists():
+        carry(page, staged)
     (staged / "offline.js").write_text("", encoding="utf-8")
     config = folder.with_name(folder.name + ".yml")
     # JSON is YAML, but for the function that names anchors.
-    text = json.dumps(configuration(sources, staged.resolve(), folder.resolve()), indent=1)
+    text = json.dumps(configuration(staged.resolve(), folder.resolve()), indent=1)
     config.write_text(text.replace('"slugify": null', '"slugify": !!python/name:make_site.slug'), encoding="utf-8")
     environment_path = str(pathlib.Path(__file__).resolve().parent)
     done = subprocess.run(["/usr/bin/python3", "-m", "mkdocs", "build", "--clean", "-q", "-f", str(config)], capture_output=True, text=True,
@@ -142,18 +197,19 @@ def make_site(sources, folder):
     worker = next(folder.glob("assets/javascripts/workers/search.*.js")).read_text(encoding="utf-8")
     (folder / "offline.js").write_text(OFFLINE % (index, json.dumps(worker).replace("</", "<\\/")), encoding="utf-8")
     # Before Material's own, which starts with the page.
-    for page in folder.rglob("*.html"):
-        text = page.read_text(encoding="utf-8")
+    for file in folder.rglob("*.html"):
+        text = file.read_text(encoding="utf-8")
         script = re.search(r'<script src="([^"]*)offline\.js"></script>', text)
         if script:
             text = text.replace(script[0], "", 1).replace("</head>", script[0] + "</head>", 1)
-            page.write_text(text, encoding="utf-8")
+            file.write_text(text, encoding="utf-8")
     broken = broken_links(folder)
     if broken:
         sys.exit("\n".join(f"{page}: {link} leads nowhere" for page, link in broken))
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    make_site(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("sources", "folder", "--drawn", "--page"):
+        parser.add_argument(name, type=pathlib.Path)
+    make_site(**vars(parser.parse_args()))

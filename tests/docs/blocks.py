@@ -197,12 +197,15 @@ def with_more(line, more):
     return re.sub(r"\s+# .*$", "", line) + more
 
 
+def runs_of(run):
+    """(block, line) of what the test `run` gives to a shell, but for lines that read files shown in blocks of other languages."""
+    return [(block, with_more(line, rule.more)) for block, line in shell_lines(all_blocks()) for rule in LINES
+            if run in rule.runs and re.match(rule.start, line)]
+
+
 def lines_of(run):
     """What the test `run` gives to a shell."""
-    blocks = all_blocks()
-    result = [with_more(line, rule.more) for _, line in shell_lines(blocks) for rule in LINES
-              if run in rule.runs and re.match(rule.start, line)]
-    return result + [other.line for other in OTHERS if other.run == run and other.line]
+    return [line for _, line in runs_of(run)] + [other.line for other in OTHERS if other.run == run and other.line]
 
 
 def block_with(language, words):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The documentation as a site: that every page is in it, one click from every other, that links lead somewhere, and that it is searched from a disk."""
+"""The documentation as a site: that every page is in it, one click from every other, that links lead somewhere, and that it is searched from a disk;
+and, with the pictures that its lines draw (the nightly class Drawn), that these are pictures of what they stand beside."""
 import importlib.util
 import json
 import os
@@ -23,7 +24,9 @@ class Site(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.site = pathlib.Path(folder.name, "site")
-        make_site.make_site(SOURCES, cls.site)
+        cls.page = pathlib.Path(folder.name, "page.html")
+        cls.page.write_text("<!doctype html><title>draws</title>", encoding="utf-8")
+        make_site.make_site(SOURCES, cls.site, page=cls.page)
         cls.html = [page.replace("README.md", "index.md").replace(".md", ".html") for page in make_site.pages()]
 
     def test_the_first_page_is_short(self):
@@ -33,6 +36,10 @@ class Site(unittest.TestCase):
         self.assertEqual(sorted(make_site.pages()), sorted(str(path.relative_to(SOURCES)) for path in blocks.documents()))
         for page in self.html:
             self.assertTrue((self.site / page).exists(), page)
+
+    def test_the_page_that_draws_is_in_it(self):
+        self.assertEqual((self.site / "docs/anamorph.html").read_bytes(), self.page.read_bytes())
+        self.assertIn("anamorph.html", make_site.read_links(self.site / "docs/web.html").links)
 
     def test_every_page_leads_to_every_other(self):
         for page in self.html:
@@ -80,6 +87,48 @@ class Site(unittest.TestCase):
                 break
             time.sleep(0.5)
         self.assertTrue(any("docs/pano.html" in link for link in links), links)
+
+
+class Drawn(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.drawn, cls.site = pathlib.Path(folder.name, "drawn"), pathlib.Path(folder.name, "site")
+        cls.drawn.mkdir()
+        for script in ("draw", "reference"):
+            subprocess.run([sys.executable, SOURCES / f"docs/site/{script}.py", SOURCES, os.environ["ANAMORPH_BUILD_DIR"], cls.drawn], check=True)
+        make_site.make_site(SOURCES, cls.site, cls.drawn)
+
+    def pictures_of(self, page):
+        return [(self.site / page).parent / link for link in make_site.read_links(self.site / page).links if link.endswith((".png", ".jpg"))]
+
+    def test_the_gallery_has_forty_pictures_and_all_differ(self):
+        pictures = [picture for picture in self.pictures_of("docs/gallery.html") if "drawn" in picture.parts]
+        self.assertGreaterEqual(len(pictures), 40)
+        self.assertGreaterEqual(len({picture.read_bytes() for picture in pictures}), 0.9 * len(pictures))
+
+    def test_a_line_has_its_picture_below_it(self):
+        text = (self.site / "docs/drape.html").read_text(encoding="utf-8")
+        line, next_words = text.index("flag.%02d.jpg"), text.index("The same tolerance holds")
+        for name in ("saddle", "moebius", "flag"):
+            self.assertRegex(text[line:next_words], rf"drawn/\d+-{name}\.*png")
+
+    def test_the_reference_shows_every_word(self):
+        text = (self.site / "docs/reference.html").read_text(encoding="utf-8")
+        for word in ("pano", "octahedral", "mei", "sharp_bicubic", "summed_area", "page_turn", "3de4", "ocam", "embm-2003", "quadratic", "drag"):
+            self.assertIn(word, text)
+        pictures = self.pictures_of("docs/reference.html")
+        self.assertGreater(len(pictures), 150)
+        one_color = []
+        for picture in pictures:
+            stats = subprocess.run(["oiiotool", "--stats", picture], capture_output=True, text=True, check=True).stdout
+            if "Constant: Yes" in stats:
+                one_color.append(picture.name)
+        self.assertEqual(one_color, [])
+
+    def test_links_lead_somewhere(self):
+        self.assertEqual(make_site.broken_links(self.site), [])
 
 
 if __name__ == "__main__":

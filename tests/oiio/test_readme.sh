@@ -5,30 +5,11 @@
 set -euo pipefail
 examples="$ANAMORPH_SOURCE_DIR/examples"
 blocks="$ANAMORPH_SOURCE_DIR/tests/docs/blocks.py"
-rm -rf tree
-mkdir -p tree/build/demo/out
-ln -s "$ANAMORPH_BUILD_DIR" tree/build/release
-cd tree/build/demo/out
-"$PYTHON" "$examples/make_panorama.py" panorama.exr 512
-"$PYTHON" "$examples/make_faces.py" round.png long.png faces.csv
-"$PYTHON" "$examples/make_cube.py" label_ .png
-cp -r "$examples/maps" .
-cp "$examples/bulge.json" "$examples/relief.csv" "$examples/smile.csv" "$examples/frown.csv" "$examples/swirl.ps" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
-lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
-oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
-oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
-cp plate.exr taken.exr
-oiiotool panorama.exr --cut 300x150+60+40 -o part.exr
-oiiotool panorama.exr --resize 256x256 -o square.exr
-oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
-oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
-
-"$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 88 ]
-if ! command -v ffmpeg >/dev/null; then
-    sed -i '/^ffmpeg /d' one_liners.sh
-fi
-(unset OIIO_LIBRARY_PATH && cd ../../.. && bash -ex build/demo/out/one_liners.sh </dev/null)
+rm -rf drawn
+mkdir drawn
+"$PYTHON" "$ANAMORPH_SOURCE_DIR/docs/site/draw.py" "$ANAMORPH_SOURCE_DIR" "$ANAMORPH_BUILD_DIR" drawn
+[ "$("$PYTHON" "$blocks" oiio | wc -l)" -eq 88 ]
+cd drawn/tree/build/demo/out
 for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
     warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480 turn.jpg:480x480; do
     iinfo "${picture%:*}" | tr -d ' ' | grep ":${picture#*:},3channel,uint8jpeg"
