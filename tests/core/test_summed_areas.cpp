@@ -344,6 +344,28 @@ TEST(SummedAreas, LargeRectanglesReadTheLevelThatIsEnoughWithinItsBound) {
     EXPECT_GT(source.pixels[3], 0);
 }
 
+TEST(SummedAreas, LevelsOfOddSizesHoldTheBoundToo) {
+    Texels texels({1021, 397}, 1, PixelType::float32);
+    texels.fill([](int x, int y, int) { return x % 90 < 45 ? y / 397.0 : 1 - x / 1021.0; });
+    const MemorySource memory = texels.source();
+    const Pyramid pyramid(memory);
+    SummedLevels sums(pyramid);
+    const SummedAreas all(memory);
+    std::mt19937 random(31);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int k = 0; k < 200; ++k) {
+        const double w = 70 + 500 * share(random), h = 70 + 250 * share(random), x = 1021 * share(random),
+                     y = 397 * share(random);
+        const double level = std::floor(std::log2(std::min(w * 510 / 1021, h * 198 / 397) / 32)) + 1;
+        const double texel = std::exp2(std::max(level, 0.0));
+        for (const Wrap wrap : {Wrap::black, Wrap::clamp, Wrap::mirror}) {
+            float mean = -1, exact = -1;
+            ASSERT_TRUE(sums.mean(x, y, w, h, wrap, &mean) && all.mean(x, y, w, h, wrap, &exact));
+            ASSERT_LE(std::fabs(mean - exact), (texel / w + texel / h) / 2 * 1.02) << "seed 31, " << k;
+        }
+    }
+}
+
 TEST(SummedAreas, RectanglesOverTilesAreThoseOfAllTexels) {
     for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32})
         for (const int alpha : {-1, 1}) {

@@ -214,10 +214,10 @@ std::shared_ptr<const SummedAreas::Tile> SummedAreas::tile(int column, int row) 
     return nullptr;
 }
 
-/// Forgets tables that were not asked for since the last time around.
+/// Forgets tables that were not asked for since the last time around. Threads that have made one wait for each other here: else they would make
+/// all others while one is forgetting.
 void SummedAreas::forget_some() const noexcept {
-    const std::unique_lock lock(m_forgetting, std::try_to_lock);
-    if (!lock) return;
+    const std::lock_guard lock(m_forgetting);
     const std::size_t count = static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(m_rows);
     for (std::size_t looked = 0; looked < 2 * count && bytes() > kMostBytes - kMostBytes / 4; ++looked) {
         const std::size_t number = m_hand++ % count;

@@ -84,11 +84,13 @@ class SummedAreas {
 
 /// Means over rectangles of a source by the tables of one of its levels. Each thread needs its own. Keeps a reference to the source.
 ///
-/// The level is the coarsest on which the shorter side of a rectangle is kLeastTexels long, else level 0. Texels of it that
-/// the rectangle covers in part count by that part: in one that is covered by a share s the mean of the whole texel stands for that of the
-/// part, which is off by at most 1 - s of the texel's range, so that the sum is off by s (1 - s) <= 1/4 of it. There are at most 2 (m + n)
-/// such texels in a rectangle of m x n, and its mean is off by at most (1/m + 1/n) / 2 <= 1/kLeastTexels of the range of what
-/// a texel at its edge averages, beside the rounding of the level's texels.
+/// The level is the coarsest on which the shorter side of a rectangle is kLeastTexels long, else level 0. Texels of it that the rectangle covers
+/// in part count by that part. Where levels are means of finer ones, as Pyramid's are, the mean of the whole texel stands for that of a share
+/// s, from which it is off by at most 1 - s of the texel's range: the sum is by s (1 - s) <= 1/4 of it. In a rectangle of m x n texels each
+/// whole row and each whole column has two of these, together 1/2. At a corner, of shares s and t of its row and its column, x = s t gives
+/// x (1 - x) <= sqrt(x) / 2 <= (s + t) / 4. The shares of all corners are those by which m and n are more than what is whole, so that
+/// all together are at most (m + n) / 2, and the mean is off by at most (1/m + 1/n) / 2 <= 1/kLeastTexels of the range of what texels at the
+/// edge average, beside the rounding of the level's texels. A texel that is no number, or infinite, is so for all of a level's texel.
 class SummedLevels {
   public:
     static constexpr int kLeastTexels = 32;
