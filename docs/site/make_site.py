@@ -79,7 +79,9 @@ def listing(folder, sources):
             + "".join(f'<li><a href="{name}">{name}</a>' for name in names) + "</ul>")
 
 
-def figure(picture, caption):
+def figure(picture, caption=""):
+    if caption:
+        caption = f"<figcaption>{caption}</figcaption>"
     return f'<figure style="display:inline-block;vertical-align:top;margin:0 1em 1em 0;max-width:20em"><img src="{picture}" alt="" loading="lazy">{caption}</figure>'
 
 
@@ -88,14 +90,12 @@ def show_drawn(staged, drawn):
     shutil.copytree(drawn / "shown", staged / "drawn")
     of_page, gallery = {}, ["", "## Of the other pages", ""]
     for page, line, text, name in json.loads((drawn / "pictures.json").read_text(encoding="utf-8")):
-        if not (drawn / "shown" / name).exists():
-            continue
         up = "../" * page.count("/")
-        of_page.setdefault(page, {}).setdefault(line, []).append(figure(f"{up}drawn/{name}", ""))
+        of_page.setdefault(page, {}).setdefault(line, []).append(figure(f"{up}drawn/{name}"))
         if page != "docs/gallery.md":
             title = html.escape(title_of(staged / page))
             link = os.path.relpath(page.replace("README.md", "index.md"), "docs").replace(".md", ".html")
-            gallery.append(figure(f"../drawn/{name}", f'<figcaption><code>{html.escape(text)}</code><br><a href="{link}">{title}</a></figcaption>'))
+            gallery.append(figure(f"../drawn/{name}", f'<code>{html.escape(text)}</code><br><a href="{link}">{title}</a>'))
     for page, blocks in of_page.items():
         path = staged / page
         lines = path.read_text(encoding="utf-8").split("\n")

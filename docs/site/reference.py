@@ -14,12 +14,13 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import draw
+import make_site
 
 SIDE = 160
 # A picture of each operation.
 OPERATIONS = {
     "pano": "panorama.exr.pano?to=stereographic&fov=240&pitch=-90", "mosaic": "panorama.exr.mosaic?from=equirectangular&x=0.4&z=0.3&depth=4&fov=100&yaw=160",
-    "lens": "label_px.png.lens?lens=brown:k1=-0.1&fov=90", "map": "round.png.map?u=x+6*sin(y/15)&v=y+6*sin(x/15)", "warp": "round.png.warp?mesh=bulge.json",
+    "lens": "label_px.png.lens?lens=brown:k1=-0.1&fov=90", "map": "round.png.map?u=x+16*sin(y/40)&v=y+16*sin(x/40)", "warp": "round.png.warp?mesh=bulge.json",
     "morph": "round.png.morph?b=long.png&features=faces.csv", "drape": "round.png.drape?surface=page_turn&turn=0.6&direction=-20&camera=0.4,-0.9,1.6&shading=phong",
     "figure": "walker.nudes.figure?frame=24&fit=1",
 }
@@ -96,8 +97,12 @@ class Reference:
         """How the page shows a picture that make(file, *arguments) draws while the page is written."""
         file = re.sub(r"[^A-Za-z0-9_.-]", "_", name) + ".png"
         self.pending.append(self.threads.submit(make, self.folder / "words" / file, *arguments))
-        return (f'<figure style="display:inline-block;vertical-align:top;margin:0 1em 1em 0;max-width:{2 * SIDE}px"><img src="../words/{file}" alt="" '
-                f'loading="lazy" style="max-width:{SIDE}px"><figcaption>{caption}</figcaption></figure>')
+        return make_site.figure(f"../words/{file}", caption)
+
+    @staticmethod
+    def small(operation, recipe):
+        """A recipe with the size of the page's pictures, but of a formula, which counts pixels of its own size."""
+        return recipe if operation == "map" or "size=" in recipe else f"{recipe}&size={SIDE}"
 
     def draw(self, shown, recipe):
         """A recipe's picture: colours as they are, of light compressed, numbers from the least, black, to the greatest, white."""
@@ -123,9 +128,7 @@ class Reference:
         accepted = next(row[1] for row in self.keys[operation] if row[0] == key)
         lines = [f"## {title}", "", f"`{key}` of [.{operation}](#{operation}):", ""]
         for word in accepted.split(", "):
-            filled = recipe.format(word) + NEEDS.get((key, word), "")
-            if operation != "map" and "size=" not in filled:
-                filled += f"&size={SIDE}"
+            filled = self.small(operation, recipe.format(word) + NEEDS.get((key, word), ""))
             lines.append(self.figure(f"{operation}_{key}_{word}", self.draw, filled, caption=f"<code>{word}</code>"))
         return lines + [""]
 
@@ -137,7 +140,7 @@ class Reference:
 
     def operation(self, name):
         lines = [f"## {name}", "", self.operations[name] + f" ([more]({name}.md)).", "",
-                 self.figure(f"operation_{name}", self.draw, f"{OPERATIONS[name]}&size={SIDE}", caption=f"<code>{escaped(OPERATIONS[name])}</code>"), "",
+                 self.figure(f"operation_{name}", self.draw, self.small(name, OPERATIONS[name]), caption=f"<code>{escaped(OPERATIONS[name])}</code>"), "",
                  "| key | may be | default | meaning |", "|---|---|---|---|"]
         return lines + [f"| `{key}` | {escaped(accepted)} | {escaped(default)} | {escaped(meaning)} |" for key, accepted, default, meaning in self.keys[name]] + [""]
 
