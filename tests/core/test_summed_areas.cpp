@@ -366,6 +366,22 @@ TEST(SummedAreas, LevelsOfOddSizesHoldTheBoundToo) {
     }
 }
 
+// Across and down, levels of odd sizes have scales of their own. The mean of a slope is what it has in the middle.
+TEST(SummedAreas, LevelsOfASlopeHaveItsMiddle) {
+    Texels texels({1021, 71}, 1, PixelType::float32);
+    texels.fill([](int x, int y, int) { return (x + 0.5) / 1021 + (y + 0.5) / 71; });
+    const MemorySource memory = texels.source();
+    const Pyramid pyramid(memory);
+    ASSERT_EQ(pyramid.size(1).height, 35);
+    SummedLevels sums(pyramid);
+    for (const double y : {34.0, 35.5, 37.0})
+        for (const double x : {100.0, 507.3, 950.0}) {
+            float mean = -1;
+            ASSERT_TRUE(sums.mean(x, y, 66, 66, Wrap::clamp, &mean));
+            EXPECT_NEAR(mean, x / 1021 + y / 71, 5e-4);
+        }
+}
+
 TEST(SummedAreas, RectanglesOverTilesAreThoseOfAllTexels) {
     for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32})
         for (const int alpha : {-1, 1}) {
