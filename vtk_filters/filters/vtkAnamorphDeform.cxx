@@ -531,40 +531,34 @@ vtkPolyData* vtkAnamorphDeform::GetOverlay() {
     return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
 }
 
-void vtkAnamorphDeform::FindHeights() {
+template <std::size_t Count, class Search>
+void vtkAnamorphDeform::Find(double (&numbers)[Count], bool on_plane, const Search& search) {
     const Kept& kept = *this->Meshes;
-    std::fill_n(this->SelectedHeights, 2, 0.0);
-    double apart = anamorph_vtk::kNowhere;
+    std::fill_n(numbers, Count, 0.0);
     const std::optional<Deformation> bump =
-        kept.on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
-    if (bump)
-        apart = anamorph_vtk::find_heights(*bump, kept.meshes, kept.deformed, kept.used_plane,
-                                           this->SelectedHeights);
-    take_best(this->SelectedHeights, 2, apart, this->Controller);
+        kept.on_plane == on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
+    take_best(numbers, Count, bump ? search(*bump, kept) : anamorph_vtk::kNowhere, this->Controller);
+}
+
+void vtkAnamorphDeform::FindHeights() {
+    this->Find(this->SelectedHeights, true, [this](const Deformation& bump, const Kept& kept) {
+        return anamorph_vtk::find_heights(bump, kept.meshes, kept.deformed, kept.used_plane,
+                                          this->SelectedHeights);
+    });
 }
 
 void vtkAnamorphDeform::FindFrame() {
-    const Kept& kept = *this->Meshes;
-    std::fill_n(this->SelectedFrame, 9, 0.0);
-    double apart = anamorph_vtk::kNowhere;
-    const std::optional<Deformation> bump =
-        kept.on_plane ? std::nullopt : deformation_of(this, this->SelectedDeformation);
-    if (bump)
-        apart = anamorph_vtk::find_frame(bump->center, kept.meshes, kept.undeformed, kept.deformed,
-                                         this->SelectedFrame);
-    take_best(this->SelectedFrame, 9, apart, this->Controller);
+    this->Find(this->SelectedFrame, false, [this](const Deformation& bump, const Kept& kept) {
+        return anamorph_vtk::find_frame(bump.center, kept.meshes, kept.undeformed, kept.deformed,
+                                        this->SelectedFrame);
+    });
 }
 
 void vtkAnamorphDeform::FindAnchor() {
-    const Kept& kept = *this->Meshes;
-    std::fill_n(this->SelectedAnchor, 9, 0.0);
-    double apart = anamorph_vtk::kNowhere;
-    const std::optional<Deformation> bump =
-        kept.on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
-    if (bump)
-        apart = anamorph_vtk::find_anchor(*bump, kept.meshes, kept.undeformed, kept.used_plane,
-                                          this->SelectedAnchor);
-    take_best(this->SelectedAnchor, 9, apart, this->Controller);
+    this->Find(this->SelectedAnchor, true, [this](const Deformation& bump, const Kept& kept) {
+        return anamorph_vtk::find_anchor(bump, kept.meshes, kept.undeformed, kept.used_plane,
+                                         this->SelectedAnchor);
+    });
 }
 
 void vtkAnamorphDeform::FindSelected() {

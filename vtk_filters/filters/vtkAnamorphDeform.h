@@ -369,6 +369,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void Execute(vtkInformationVector** inputs, vtkInformationVector* outputs);
     void SetText(std::string& member, const char* text);
     void NameDeformations();
+    /// Finds numbers about the selected deformation, of lists on the plane or of those in texture coordinates, on the rank that has the best.
+    template <std::size_t Count, class Search>
+    void Find(double (&numbers)[Count], bool on_plane, const Search& search);
     void FindHeights();
     void FindFrame();
     void Pick(const std::array<double, 3>& at, std::optional<double> distance);
