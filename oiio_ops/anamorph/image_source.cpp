@@ -19,6 +19,7 @@
 #include <tuple>
 
 #include "anamorph/error.h"
+#include "anamorph/file_names.h"
 #include "anamorph/image/pixel.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -326,7 +327,8 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std
       m_name(name),
       m_shown(shown),
       m_subimage(subimage),
-      m_first_level(first_level) {}
+      m_first_level(first_level),
+      m_state(content_state(name)) {}
 
 CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level)
     : CacheSource(std::move(cache), name, name, subimage, first_level) {
@@ -492,10 +494,22 @@ bool CacheSource::read_stored(const Box& box, std::byte* texels, std::ptrdiff_t 
     return true;
 }
 
+bool CacheSource::is_replaced() const {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    if (m_levels.front().spec.tile_width > 0 || now.count() < m_next_look.load(std::memory_order_relaxed))
+        return false;
+    const std::string state = content_state(m_name.string());
+    if (!state.empty() && state != m_state) return true;
+    m_next_look.store((now + std::chrono::milliseconds(10)).count(), std::memory_order_relaxed);
+    return false;
+}
+
 /// `box` lies inside the data window.
 bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const {
     const Level& l = m_levels[static_cast<std::size_t>(level)];
     const int file_level = m_first_level + level;
+    // The cache would write what it reads of the new file into memory for the old one's.
+    if (is_replaced()) return fail("has changed since it was opened");
     const CacheThread thread(m_cache);
     ImageCache::ImageHandle* image = m_cache->get_image_handle(m_name, thread);
     static const OIIO::ustring resolution("resolution"), channel_count("channels");

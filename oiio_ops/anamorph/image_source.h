@@ -12,6 +12,8 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagecache.h>
 
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -133,12 +135,16 @@ class CacheSource final : public Source {
     bool read_rows(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool read_stored(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
+    /// Is a file without tiles another one by now? Looks again after some milliseconds.
+    bool is_replaced() const;
     bool fail(const std::string& message) const;
 
     ImageCacheRef m_cache;
     OIIO::ustring m_name;
     std::string m_shown;
     int m_subimage, m_first_level;
+    std::string m_state;  ///< of the file's content when it was opened
+    mutable std::atomic<std::chrono::steady_clock::duration::rep> m_next_look{0};
     PixelType m_type = PixelType::float32;
     int m_alpha = -1, m_channels = 0;
     std::vector<Level> m_levels;

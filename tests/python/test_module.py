@@ -379,6 +379,25 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(anamorph.Error, "not initialised|cannot be read"):
             anamorph.pano(oiio.ImageBuf(), **self.KEYS)
 
+    def test_image_bufs_without_pixels(self):
+        nothing = oiio.ImageBuf(oiio.ImageSpec(12, 8, 3, "uint32"))  # which is no name of a type
+        nothing.geterror()
+        with self.assertRaisesRegex(anamorph.Error, "the source image cannot be read"):
+            anamorph.pano(nothing, fov=60, size=(5, 5))
+
+    def test_a_file_that_is_replaced_after_it_was_opened(self):
+        def write(width, height, channels):
+            file = oiio.ImageOutput.create("replaced.tif")
+            file.open("replaced.tif", oiio.ImageSpec(width, height, channels, "uint8"))
+            file.write_image(np.ones((height, width, channels), np.uint8))
+            file.close()
+
+        write(5, 6, 1)
+        picture = anamorph.Picture("drape", "replaced.tif", surface="sphere", size=(20, 20))
+        write(80, 80, 3)
+        with self.assertRaisesRegex(anamorph.Error, "replaced.tif.* has changed since it was opened"):
+            picture.draw()
+
     def test_numpy_takes_a_picture(self):
         picture = anamorph.Picture("pano", noise(64, 128), **self.KEYS)
         np.testing.assert_array_equal(np.asarray(picture), picture.draw())
