@@ -21,10 +21,23 @@
 //
 // NaN and infinities come out as IEEE has them for + - * / sqrt; the functions give NaN for NaN.
 
+// How functions of several operations are compiled: single numbers, for processors of before 2008, call them, as a copy in each
+// formula would take long to compile.
+#undef ANAMORPH_LANES_INLINE
+#if HWY_TARGET == HWY_SCALAR && !HWY_ARCH_WASM
+#define ANAMORPH_LANES_INLINE inline
+#else
+#define ANAMORPH_LANES_INLINE HWY_INLINE
+#endif
+
 /// The lanes for which a condition holds.
 template <class Tag>
 struct LaneMask {
     hn::Mask<Tag> m;
+
+    // GCC compiles constructors that are not written for no instruction set, and NEON's masks have one that it then cannot call.
+    HWY_INLINE LaneMask() {}
+    HWY_INLINE LaneMask(hn::Mask<Tag> mask) : m(mask) {}  // NOLINT: as an aggregate would be made
 
     friend HWY_INLINE LaneMask both(const LaneMask& a, const LaneMask& b) { return {hn::And(a.m, b.m)}; }
 };
@@ -129,7 +142,7 @@ HWY_INLINE Lanes<D> times_power_of_two(const Lanes<D>& a, const WholeLanes<D>& n
 /// The sine of a and 1 - cos a within a quarter of a turn around 0: minimax polynomials of degree 13 and 14 in
 /// double (the coefficients are those of fdlibm's kernels), 7 and 8 in float (Cephes').
 template <class D>
-HWY_INLINE void sine_versine(const Lanes<D>& a, Lanes<D>& s, Lanes<D>& v) {
+ANAMORPH_LANES_INLINE void sine_versine(const Lanes<D>& a, Lanes<D>& s, Lanes<D>& v) {
     const Lanes<D> z = a * a;
     if constexpr (sizeof(hn::TFromD<D>) == 8) {
         constexpr double kSine[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
@@ -159,7 +172,7 @@ HWY_INLINE LaneMask<D> has_bit(hn::Vec<hn::RebindToSigned<D>> n, int bit) {
 /// Takes off quarters of a turn, in parts of pi / 2 that have as many bits less as the count of quarters may
 /// have; then by quadrant.
 template <class D>
-HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
+ANAMORPH_LANES_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
     const hn::RebindToSigned<D> di;
     Lanes<D> quarters, r;
     const auto n = nearest_integer(a * Lanes<D>(0.63661977236758134308), quarters);
@@ -180,7 +193,7 @@ HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
 
 /// The angle whose tangent is t, within an eighth of a half turn around 0: fdlibm's polynomial and Cephes'.
 template <class D>
-HWY_INLINE Lanes<D> small_atan(const Lanes<D>& t) {
+ANAMORPH_LANES_INLINE Lanes<D> small_atan(const Lanes<D>& t) {
     const Lanes<D> z = t * t;
     if constexpr (sizeof(hn::TFromD<D>) == 8) {
         constexpr double kArc[] = {
@@ -205,7 +218,7 @@ constexpr double kTangentOfSixteenth = 0.41421356237309503;
 /// The angle whose tangent is p / q, neither of them negative, up to 3 / 16 of a turn: beyond tan(pi / 8) it is
 /// pi / 4 + atan((p - q) / (p + q)). 0 / 0 is the angle 0.
 template <class D>
-HWY_INLINE Lanes<D> steep_angle(const Lanes<D>& p, const Lanes<D>& q) {
+ANAMORPH_LANES_INLINE Lanes<D> steep_angle(const Lanes<D>& p, const Lanes<D>& q) {
     using L = Lanes<D>;
     const auto beyond = q * kTangentOfSixteenth < p;
     const L over = select(beyond, p + q, q);
@@ -217,7 +230,7 @@ HWY_INLINE Lanes<D> steep_angle(const Lanes<D>& p, const Lanes<D>& q) {
 
 /// The angle of (x, y), |y| <= tan(3 pi / 8) x and x > 0. Angles up to pi / 8 are found for themselves, with the same bits.
 template <class D>
-HWY_INLINE Lanes<D> small_angle(const Lanes<D>& y, const Lanes<D>& x) {
+ANAMORPH_LANES_INLINE Lanes<D> small_angle(const Lanes<D>& y, const Lanes<D>& x) {
     using L = Lanes<D>;
     const L p = abs(y);
     const bool small = hn::AllFalse(D(), (x * kTangentOfSixteenth < p).m);
@@ -227,7 +240,7 @@ HWY_INLINE Lanes<D> small_angle(const Lanes<D>& y, const Lanes<D>& x) {
 
 /// The angle of (x, y), by octant.
 template <class D>
-HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
+ANAMORPH_LANES_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
     using L = Lanes<D>;
     const L ax = abs(x), ay = abs(y);
     const auto steep = ax < ay;
@@ -240,7 +253,7 @@ HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
 /// e^a: with a = n log 2 + r, e^r = 1 + r + r c / (2 - c), c = r - r^2 P(r^2) (fdlibm's e_exp), times 2^n in
 /// two steps, so that neither leaves the range.
 template <class D>
-HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
+ANAMORPH_LANES_INLINE Lanes<D> exp(const Lanes<D>& a) {
     using L = Lanes<D>;
     constexpr bool kDouble = sizeof(hn::TFromD<D>) == 8;
     constexpr double kMost = kDouble ? 710 : 89, kLeast = kDouble ? -746 : -104;
@@ -261,7 +274,7 @@ HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
 /// log a: with a = 2^n m, m around 1, f = m - 1 and s = f / (2 + f), log m = f - s (f - R(s^2)) and so on
 /// (fdlibm's e_log). -inf at 0, NaN below.
 template <class D>
-HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
+ANAMORPH_LANES_INLINE Lanes<D> log(const Lanes<D>& a) {
     using L = Lanes<D>;
     const D d;
     const hn::RebindToSigned<D> di;
@@ -295,14 +308,14 @@ HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
 /// The logarithm log(1 + a) for a >= 0: what rounding takes from 1 + a = w is made good by a / (w - 1)
 /// (Kahan).
 template <class D>
-HWY_INLINE Lanes<D> log_of_one_more(const Lanes<D>& a) {
+ANAMORPH_LANES_INLINE Lanes<D> log_of_one_more(const Lanes<D>& a) {
     using L = Lanes<D>;
     const L w = a + L(1), rest = w - L(1);
     return select(is_zero(rest), a, log(w) * (a / select(is_zero(rest), L(1), rest)));
 }
 /// The difference e^a - 1 for a <= 0: what rounding takes from e^a = w is made good by a / log w (Kahan).
 template <class D>
-HWY_INLINE Lanes<D> exp_less_one(const Lanes<D>& a) {
+ANAMORPH_LANES_INLINE Lanes<D> exp_less_one(const Lanes<D>& a) {
     using L = Lanes<D>;
     const L w = exp(a), rest = w - L(1), logarithm = log(w);
     // Where e^a is 1 it is a; where next to nothing, -1.
@@ -313,7 +326,7 @@ HWY_INLINE Lanes<D> exp_less_one(const Lanes<D>& a) {
 /// asinh |a| as log(1 + b + b^2 / (1 + sqrt(1 + b^2))) for b = |a|; beyond 2^30 the 1 is lost, and squares
 /// would overflow.
 template <class D>
-HWY_INLINE Lanes<D> asinh(const Lanes<D>& a) {
+ANAMORPH_LANES_INLINE Lanes<D> asinh(const Lanes<D>& a) {
     using L = Lanes<D>;
     const L b = abs(a);
     const LaneMask<D> large = L(0x1p30) < b;
@@ -326,7 +339,7 @@ HWY_INLINE Lanes<D> asinh(const Lanes<D>& a) {
 /// tanh a in s, and 1 / cosh a: with m = e^-2|a| - 1, tanh |a| = -m / (m + 2) and 1 / cosh a = 2 e^-|a| /
 /// (m + 2).
 template <class D>
-HWY_INLINE Lanes<D> scaled_sinh(const Lanes<D>& a, Lanes<D>& s) {
+ANAMORPH_LANES_INLINE Lanes<D> scaled_sinh(const Lanes<D>& a, Lanes<D>& s) {
     using L = Lanes<D>;
     const L b = abs(a), m = exp_less_one(b * -2.0), over = m + L(2);
     s = L(hn::CopySign((-m / over).v, a.v));

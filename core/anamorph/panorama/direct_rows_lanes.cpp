@@ -19,11 +19,13 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
-#define ANAMORPH_INLINE HWY_INLINE
-#ifdef ANAMORPH_SANITIZED
-// In one function each the formulas take minutes to compile.
+// In one function each the formulas are fast, and take long to compile: not for processors without vectors, and the reading in order.
+#undef ANAMORPH_FLATTEN
+#if defined(ANAMORPH_SANITIZED) || HWY_TARGET == HWY_SCALAR
+#define ANAMORPH_INLINE inline
 #define ANAMORPH_FLATTEN
 #else
+#define ANAMORPH_INLINE HWY_INLINE
 #define ANAMORPH_FLATTEN HWY_FLATTEN
 #endif
 #include "anamorph/number/near.h"
