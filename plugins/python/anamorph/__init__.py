@@ -39,6 +39,8 @@ __path__ = _extend_path(__path__, __name__)
 __version__ = _core.version
 _OPERATIONS = {operation["name"]: operation for operation in _core.operations()}
 _TABLES = {name: {key["name"]: key for key in operation["keys"]} for name, operation in _OPERATIONS.items()}
+_DTYPES = frozenset(map(_numpy.dtype, _core.dtypes))  # of this machine's byte order
+_CONVERTED = frozenset(map(_numpy.dtype, ("uint8", "uint16", "float16", "float32")))
 operations = tuple(_OPERATIONS)
 
 
@@ -164,11 +166,11 @@ class Picture:
                 raise ValueError(f"out has the shape {out.shape}: must be {shape}")
             if not out.flags.writeable:
                 raise ValueError("out is read-only: must be writeable")
-            if out.dtype.name not in _core.dtypes or not out.dtype.isnative:
+            if out.dtype not in _DTYPES:
                 raise TypeError(f"out has the dtype {out.dtype}: must be one of {', '.join(_core.dtypes)}")
         drawn = pixels if pixels.ndim == 3 else pixels[:, :, None]
         # Sources are read while pixels are written.
-        plain = _is_plain(drawn) and not any(_numpy.may_share_memory(drawn, array) for array in self._core.arrays)
+        plain = pixels is not out or (_is_plain(drawn) and not any(_numpy.may_share_memory(drawn, array) for array in self._core.arrays))
         to = drawn if plain else _numpy.empty(drawn.shape, drawn.dtype)
         self._core.draw(to, x0, y0, self._threads, progress)
         if not plain:
@@ -223,9 +225,9 @@ def _check_sources_are_no_keys(operation, keys):
 
 
 def _number_text(key, value):
-    if isinstance(value, (bool, _numpy.bool_)):
-        return str(int(value))
-    if isinstance(value, _numbers.Integral):
+    if isinstance(value, (int, float)):  # most are: abstract classes take longer to ask
+        return str(int(value)) if isinstance(value, int) else repr(float(value))
+    if isinstance(value, (_numpy.bool_, _numbers.Integral)):
         return str(int(value))
     if isinstance(value, _numpy.floating):
         return str(value)  # its own fewest digits
@@ -253,7 +255,9 @@ def _text_of(row, key, value, texts, images):
         raise TypeError(f"{key} is a {type(value).__name__}: must be the name of a file, or the dict or list that a JSON file holds")
     if isinstance(value, (tuple, list, _numpy.ndarray)):
         separator = "x" if kind == "extent" else ","
-        return separator.join(_number_text(key, part) for part in _numpy.ravel(value).tolist())
+        flat = isinstance(value, (tuple, list)) and all(isinstance(part, (int, float)) for part in value)
+        parts = value if flat else _numpy.ravel(value).tolist()
+        return separator.join([_number_text(key, part) for part in parts])
     return _number_text(key, value)
 
 
@@ -262,7 +266,7 @@ def _pixels(pixels, name):
     if hasattr(pixels, "__dlpack__") and not isinstance(pixels, _numpy.ndarray):
         pixels = _numpy.from_dlpack(pixels)
     array = _numpy.asarray(pixels)
-    if array.dtype.name not in _core.dtypes or not array.dtype.isnative:
+    if array.dtype not in _DTYPES:
         raise TypeError(f"{name} has the dtype {array.dtype}: must be one of {', '.join(_core.dtypes)}")
     if array.ndim not in (2, 3):
         raise ValueError(f"{name} has the shape {array.shape}: must be (height, width) or (height, width, channels)")
@@ -274,7 +278,7 @@ def _pixels(pixels, name):
 def _is_plain(array):
     """Do the channels of a pixel stand next to each other, and pixels and rows behind each other, aligned?"""
     rows, columns, channels = array.strides
-    if array.dtype.name not in ("uint8", "uint16", "float16", "float32") and (rows | columns | array.ctypes.data) % 4:
+    if array.dtype not in _CONVERTED and (rows | columns | array.ctypes.data) % 4:
         return False  # pixels that are only moved are moved four bytes at a time where that fits
     return (channels == array.itemsize and columns >= array.shape[2] * array.itemsize and rows >= 0
             and array.flags.aligned and (rows >= columns * array.shape[1] or array.shape[0] == 1))
@@ -293,7 +297,7 @@ def _is_flat(source):
         return source.pixels.ndim == 2
     if isinstance(source, (str, _os.PathLike)) or _is_imagebuf(source):
         return True
-    return _numpy.ndim(source) == 2
+    return (source.ndim if isinstance(source, _numpy.ndarray) else _numpy.ndim(source)) == 2
 
 
 def _source_of(source, name="a source"):
@@ -301,11 +305,13 @@ def _source_of(source, name="a source"):
         return _core.file_source(_encoded(_os.fsdecode(source), name))
     if _is_imagebuf(source):
         source = _read_imagebuf(source)
-    if not isinstance(source, Image):
-        source = Image(_pixels(source, name))
-    array = source.pixels if source.pixels.ndim == 3 else source.pixels[:, :, None]
+    array = source.pixels if isinstance(source, Image) else _pixels(source, name)
+    if array.ndim == 2:
+        array = array[:, :, None]
     if not _is_plain(array):
         array = _numpy.ascontiguousarray(array)
+    if not isinstance(source, Image):
+        return _core.array_source(array, (), False, (0, 0), (0, 0, 0, 0), ())
     return _core.array_source(array, [_encoded(channel, "channels") for channel in source.channels], source.unassociated, source.corner, source.display,
                               [(_encoded(name, "metadata"), _encoded(value, name) if isinstance(value, str) else value)
                                for name, value in source.metadata.items()])
@@ -314,7 +320,7 @@ def _source_of(source, name="a source"):
 def _read_imagebuf(image):
     """An ImageBuf as an Image: a copy, since its module and this one may have been built with different OpenImageIOs."""
     spec = image.spec()
-    if image.has_error or spec.width < 1:
+    if image.has_error or spec.width < 1 or str(spec.format) == "unknown":
         raise Error(f"the source image cannot be read: {image.geterror() or 'it is not initialised'}")
     if spec.deep or spec.depth > 1:
         raise Error("the source image is deep or a volume: must be a flat image")

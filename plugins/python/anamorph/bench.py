@@ -213,7 +213,7 @@ def main(arguments=None):
         parser.error(f"--rounds={given.rounds}: must be from 1 to 1000")
     program = table_program()
     if given.tables and not program:
-        parser.error("--tables: there is no speed_vs_error: must be run of a build with tests, or ANAMORPH_SPEED_VS_ERROR must name it")
+        parser.error("--tables: there is no speed_vs_error: must be run of a build that has made it (target speed_vs_error), or ANAMORPH_SPEED_VS_ERROR must name it")
     folder = pathlib.Path(given.output)
     folder.mkdir(parents=True, exist_ok=True)
     told = (lambda text: print(text, file=sys.stderr)) if sys.stderr.isatty() else (lambda text: None)
