@@ -55,6 +55,7 @@ async function main() {
     ["nothing", /nothing/],
     ["", /recipe/],
     ["pano?alpha=1", /alpha/],
+    ["pano?scheme=hardware", /scheme=hardware is not in this build/],
     ["pano?lens=lensfun:lens=x", /lens/],
   ])
     assert.throws(() => core.plan(recipe), message, recipe);

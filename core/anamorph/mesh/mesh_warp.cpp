@@ -10,6 +10,7 @@
 #include "anamorph/mesh/mesh_edges.h"
 #include "anamorph/mesh/mesh_scattered.h"
 #include "anamorph/mesh/stmap_plan.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -25,9 +26,13 @@ void check_holes(const ControlMesh& mesh, const Size& target, const std::string&
 
 std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source, const Size& target,
                                           const MeshWarpOptions& options) {
-    if (const ControlPoints* points = std::get_if<ControlPoints>(&map.shape))
-        return std::make_unique<ScatteredPlan>(Scattered(*points, target, source, options.amount, map.name),
-                                               options.scheme, options.tol);
+    if (const ControlPoints* points = std::get_if<ControlPoints>(&map.shape)) {
+        if constexpr (kIsSmall)
+            refuse_left_out(map.name + ", of control points,");
+        else
+            return std::make_unique<ScatteredPlan>(
+                Scattered(*points, target, source, options.amount, map.name), options.scheme, options.tol);
+    }
     const ControlMesh& mesh = std::get<ControlMesh>(map.shape);
     check_holes(mesh, target, map.name);
     if (mesh.direction == Direction::push)

@@ -15,7 +15,7 @@ namespace anamorph {
 
 struct Heading;  // chart/projection/facts.h
 
-#ifdef ANAMORPH_SANITIZED
+#if defined(ANAMORPH_SANITIZED) || defined(ANAMORPH_NEAR_CALLS)
 #define ANAMORPH_INLINE inline
 #else
 // Inlines an operation: as calls, operations would take twice as long.

@@ -19,6 +19,7 @@
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
 #include "anamorph/operation/stereo.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -507,8 +508,9 @@ LensModel lens_of(const ParameterValues& values, const std::string& name) {
 
 /// The machine of scheme hardware. What is said of a machine is checked with the other schemes too.
 std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
-    const machine::BumpUnit unit =
-        values.given("machine") ? machine::bump_unit_from_text(values.text("machine")) : machine::BumpUnit{};
+    machine::BumpUnit unit;
+    if constexpr (!kIsSmall)
+        if (values.given("machine")) unit = machine::bump_unit_from_text(values.text("machine"));
     rows::check_scheme_of(values, "machine", {"hardware"});
     if (values.text("scheme") != "hardware") return {};
     return unit;
@@ -737,6 +739,7 @@ namespace {
 
 /// A panorama drawn by a bump unit.
 std::unique_ptr<const SolvedPicture> bumped_picture(const ReprojectRequest& request) {
+    if constexpr (kIsSmall) refuse_left_out("scheme=hardware");
     const auto plan = std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine);
     Picture picture = picture_through(plan, Border(request.source.chart, request.options.wrap),
                                       request.options.filter, request.options.output);
@@ -812,13 +815,18 @@ const Operation& pano_operation() {
         .least_sources = 1,
         .example = {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
         .make = [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
-            if (is_of_project(input.files)) return pictures_of_project(input);
+            if (is_of_project(input.files)) {
+                if constexpr (kIsSmall)
+                    refuse_left_out("a project of Hugin");
+                else
+                    return pictures_of_project(input);
+            }
             const Eyes eyes(input.values, input.sources[0].facts);
             return eyes.pictures(panos(input, eyes.facts_of_one()));
         },
         .main_file = "src",
         .endings = {"pto"},
-        .linked = images_of_project,
+        .linked = kIsSmall ? nullptr : images_of_project,
         .reads_faces = true};
     return operation;
 }

@@ -10,6 +10,7 @@
 #include "anamorph/image/strips.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -124,6 +125,7 @@ std::optional<machine::ShaderProgram> read_shader(const OperationInput& input) {
     const auto file = input.files.find("program");
     if (file == input.files.end()) return {};
     const std::string& name = file->second.name;
+    if constexpr (kIsSmall) refuse_left_out("program=" + printable(name));
     machine::ShaderProgram program =
         machine::assemble_shader(input.reader.text(name), name, machine::kWarpSlots);
     if (input.values.text("scheme") != "hardware")
@@ -141,6 +143,7 @@ void check_program_channels(const WarpRequest& request, int channels) {
 }
 
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request) {
+    if constexpr (kIsSmall) refuse_left_out("scheme=hardware");
     const bool is_color = !request.options.folds && request.options.output == Output::color;
     if (is_color && runs_program(request)) return std::make_unique<ProgrammedPicture>(map, request);
     return solved(warped_by_shader(map, request));

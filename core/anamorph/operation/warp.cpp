@@ -7,6 +7,7 @@
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/shaded_picture.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/parameter/left_out.h"
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
@@ -72,9 +73,9 @@ ParameterTable make_warp_table() {
 
 /// The unit of scheme hardware. What is said of a machine is checked with the other schemes too.
 std::optional<machine::ShaderUnit> shader_of(const ParameterValues& values) {
-    const machine::ShaderUnit unit = values.given("machine")
-                                         ? machine::shader_unit_from_text(values.text("machine"))
-                                         : machine::ShaderUnit{};
+    machine::ShaderUnit unit;
+    if constexpr (!kIsSmall)
+        if (values.given("machine")) unit = machine::shader_unit_from_text(values.text("machine"));
     rows::check_scheme_of(values, "machine", {"hardware"});
     if (values.text("scheme") != "hardware") return {};
     return unit;
