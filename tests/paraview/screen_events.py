@@ -46,6 +46,22 @@ class Screen:
         self.x11.XSync(self.display, 0)
         time.sleep(0.2)
 
+    def focus(self):
+        """Lets the window under the pointer have the keys."""
+        root, child, number, mask = ctypes.c_ulong(), ctypes.c_ulong(), ctypes.c_int(), ctypes.c_uint()
+        self.x11.XQueryPointer(self.display, self.root, ctypes.byref(root), ctypes.byref(child), *[ctypes.byref(number)] * 4,
+                               ctypes.byref(mask))
+        self.x11.XSetInputFocus(self.display, child, 1, ctypes.c_ulong(0))
+        self.x11.XSync(self.display, 0)
+        time.sleep(0.5)
+
+    def type(self, text):
+        """Types into the window under the pointer, and presses Return."""
+        self.focus()
+        for symbol in [*map(ord, text), 0xff0d]:
+            self.key(symbol, True)
+            self.key(symbol, False)
+
     def drag(self, start, end, steps=8):
         self.move(*start)
         self.move(start[0] + 1, start[1])

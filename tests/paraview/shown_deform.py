@@ -14,7 +14,8 @@ CONTROL = 0xffe3
 SCRIPT = """
 import json, os
 from paraview.simple import *
-LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
+if "PV_PLUGIN_PATH" not in os.environ:
+    LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
 GetSettingsProxy("GeneralSettings").AutoApply = {auto_apply}
 sphere = {surface}
 sphere.UpdatePipeline()
@@ -42,7 +43,7 @@ def tell(*_):
         handles[name] = list(renderer.GetDisplayPoint())
     now = json.dumps({{"size": list(view.GetRenderWindow().GetSize()),
                       "pixel": 2 * renderer.GetActiveCamera().GetParallelScale() / view.GetRenderWindow().GetSize()[1], "handles": handles,
-                      "list": list(deform.Deformations), "table": list(deform.Bumps), "selected": deform.SelectedDeformation,
+                      "list": list(deform.Deformations), "table": list(deform.Bumps), "selected": deform.SelectedDeformation, "ranks": servermanager.ActiveConnection.GetNumberOfDataPartitions(),
                       "bounds": list(deform.GetDataInformation().GetBounds()),
                       "places": {{name: list(deform.GetPropertyValue(name)) for name in handles}}}})
     if now != told[0]:
@@ -70,11 +71,22 @@ class Shown:
     def __init__(self, folder):
         from screen_events import Screen
         self.folder = folder
-        self.program = subprocess.Popen(["paraview", "--script=" + folder + "/script.py"])
+        self.server = None
+        where = []
+        if os.environ.get("ANAMORPH_RANKS"):
+            self.server = subprocess.Popen(["mpiexec", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", os.environ["ANAMORPH_RANKS"],
+                                            "pvserver", "--server-port=0"], stdout=subprocess.PIPE, text=True)
+            port = next(line.strip().rsplit(":", 1)[1] for line in self.server.stdout if line.startswith("Accepting connection(s): "))
+            where = ["--disable-registry", "--server-url=cs://127.0.0.1:" + port]  # without the welcome, which comes before the script
+        self.program = subprocess.Popen(["paraview", *where, "--script=" + folder + "/script.py"])
         self.screen = Screen()
-        self.wait_for(lambda: os.path.exists(folder + "/state"))
+
+    def look(self):
+        """Waits for the window, and finds its view."""
+        self.wait_for(lambda: os.path.exists(self.folder + "/state"))
         time.sleep(6)  # panels are made after the script, and the welcome is shown
-        self.screen.close_dialog()
+        if not self.server:
+            self.screen.close_dialog()
         self.left, top, right, self.bottom = view_on(self.screen.picture())
         size = self.state()["size"]
         assert abs(right - self.left - size[0]) <= 2 and abs(self.bottom - top - size[1]) <= 2, (self.left, top, right, self.bottom)
@@ -107,9 +119,32 @@ class Shown:
         if control:
             self.screen.key(CONTROL, False)
 
+    def press(self, key):
+        """A key with Ctrl, such as z and y, which undo and redo."""
+        self.screen.focus()
+        for symbol, down in ((CONTROL, True), (ord(key), True), (ord(key), False), (CONTROL, False)):
+            self.screen.key(symbol, down)
+
+    def apply(self):
+        """Presses the button Apply, which is green when there is something to apply."""
+        def green():
+            panel = self.screen.picture()[:, :self.left - 10].astype(int)
+            return ((panel[:, :, 1] > panel[:, :, 0] + 15) & (panel[:, :, 1] > panel[:, :, 2] + 15) & (panel[:, :, 1] > 150)).nonzero()
+
+        self.wait_for(lambda: len(green()[0]) > 300)
+        rows, columns = green()
+        self.screen.move(sorted(columns)[len(columns) // 2], sorted(rows)[len(rows) // 2])
+        self.screen.button(True)
+        self.screen.button(False)
+
+    def view(self):
+        """The pixels of the view."""
+        width, height = self.state()["size"]
+        return self.screen.picture()[self.bottom - height:self.bottom, self.left:self.left + width].astype(int)
+
     def surface(self):
         """Which pixels of the view are not its background."""
-        picture = self.screen.picture()[self.bottom - self.state()["size"][1]:self.bottom, self.left:self.left + self.state()["size"][0]]
+        picture = self.view()
         return ~((picture[:, :, 1] > 200) & (picture[:, :, 0] < 60) & (picture[:, :, 2] < 60))
 
     def save(self, name):
@@ -122,16 +157,20 @@ class Shown:
     def close(self):
         self.program.kill()
         self.program.wait(timeout=60)
+        if self.server:
+            self.server.terminate()
+            self.server.wait(timeout=60)
 
 
 def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolution=64, PhiResolution=65)",
         settings="Deformations=[0, 0, .5, .5, 0, 0, .5, 0, 1], Depths=[0, 0, 1]", position="[0, -7, .3]", focus="[0, 0, .3]",
-        up="[0, 0, 1]", script=SCRIPT):
+        up="[0, 0, 1]", script=SCRIPT, ranks=0):
     """Runs `drive` of a window in a display of its own; `file` is the test, which calls this again there. `script` shows the Deform, or
-    something else."""
+    something else. With `ranks` the window is the client of a server of so many, and both have the plugin by PV_PLUGIN_PATH."""
     if len(sys.argv) > 1:
         shown = Shown(sys.argv[1])
         try:
+            shown.look()
             drive(shown)
         finally:
             shown.close()
@@ -142,6 +181,8 @@ def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolu
             file_.write(script.format(folder=folder, auto_apply=auto_apply, surface=surface, settings=settings, position=position,
                                       focus=focus, up=up))
         environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder}
+        if ranks:
+            environment.update(ANAMORPH_RANKS=str(ranks), PV_PLUGIN_PATH=os.path.dirname(os.environ["ANAMORPH_PLUGIN"]))
         done = subprocess.run([*xvfb_run(number), sys.executable, file, folder], env=environment, capture_output=True, text=True,
                               timeout=390)
         assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]

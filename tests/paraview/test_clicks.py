@@ -44,6 +44,12 @@ def drive(shown):
     # Beside it there is the corner's handle.
     column, row = np.median(columns), np.median(rows)
     assert abs((column - size[0] / 2) * shown.pixel) < 0.1 and row < size[1] / 2 - 0.9 / shown.pixel, (column, row, size, shown.pixel)
+    # The click is one step of undo, and of redo, to the bit.
+    placed = shown.state()["list"]
+    shown.press("z")
+    shown.wait_for(lambda: shown.state()["list"] == ROWS and shown.state()["selected"] == 0)
+    shown.press("y")
+    shown.wait_for(lambda: shown.state()["list"] == placed and shown.state()["selected"] == 2)
 
 
 run(__file__, 328, drive, settings=f"Deformations={ROWS}, Depths=[0, 0, 1, 0, 0, 1]", position="[0, 0, 7]", focus="[0, 0, 0]", up="[0, 1, 0]")

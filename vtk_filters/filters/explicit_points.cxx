@@ -26,6 +26,10 @@
 #include "vtkStructuredGrid.h"
 #include "vtkUniformGrid.h"
 #include "vtkUniformGridAMR.h"
+#include "vtkVersionMacros.h"
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+#include "vtkCartesianGrid.h"
+#endif
 
 namespace anamorph_vtk {
 namespace {
@@ -123,10 +127,15 @@ vtkSmartPointer<vtkDataObject> without_levels(vtkDataObject* data) {
     blocks->SetNumberOfBlocks(levels->GetNumberOfLevels());
     for (unsigned int level = 0; level < levels->GetNumberOfLevels(); ++level) {
         vtkNew<vtkMultiBlockDataSet> grids;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+        const unsigned int count = levels->GetNumberOfBlocks(level);
+        const auto grid = [&](unsigned int i) { return levels->GetDataSetAsCartesianGrid(level, i); };
+#else
         const unsigned int count = levels->GetNumberOfDataSets(level);
+        const auto grid = [&](unsigned int i) { return levels->GetDataSet(level, i); };
+#endif
         grids->SetNumberOfBlocks(count);
-        for (unsigned int i = 0; i < count; ++i)
-            grids->SetBlock(i, static_cast<vtkDataObject*>(levels->GetDataSet(level, i)));
+        for (unsigned int i = 0; i < count; ++i) grids->SetBlock(i, static_cast<vtkDataObject*>(grid(i)));
         blocks->SetBlock(level, grids);
     }
     blocks->GetFieldData()->PassData(levels->GetFieldData());

@@ -49,6 +49,7 @@
 #include "vtkTexture.h"
 #include "vtkTextureObject.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVersionMacros.h"
 #include "vtkWeakPointer.h"
 #if __has_include("vtk_glad.h")
 #include "vtk_glad.h"
@@ -634,7 +635,11 @@ void vtkAnamorphEllipsoidMapper::FindVariant(vtkRenderer* renderer, vtkActor* ac
                                      ? texture->GetTextureObject()->GetComponents()
                                      : 0;
     vtkInformation* keys = actor->GetPropertyKeys();
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+    variant.texture_is_moved = keys && keys->Has(vtkProp::GENERAL_TEXTURE_TRANSFORM());
+#else
     variant.texture_is_moved = keys && keys->Has(vtkProp::GeneralTextureTransform());
+#endif
     variant.style = this->Style;
     variant.mapping = this->Current->textures.empty() || renderer->GetSelector() ? -1 : this->TextureMapping;
 }

@@ -627,10 +627,31 @@ void vtkSMAnamorphDeformProxy::AddBump(double u, double v, double w) {
         added[10] = 1, added[11] = 0;
         const double plain[7] = {1, 0, 0, 0, 0, 0, 0};
         std::copy_n(plain, 7, added + 12);
+        if (on_plane) {
+            // The server has the row before the properties do, so that a click is one step of undo.
+            const auto position = static_cast<int>(rows);
+            vtkClientServerStream stream;
+            const auto invoke = [&](const char* method, int number) {
+                stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << method << number;
+            };
+            const auto give_part = [&](const char* method, std::size_t part) {
+                invoke(method, position);
+                for (std::size_t i = 0; i < kTableColumns; ++i)
+                    if (kTable[i].part == part) stream << added[i];
+                stream << vtkClientServerStream::End;
+            };
+            invoke("SetNumberOfDeformations", position + 1);
+            stream << vtkClientServerStream::End;
+            give_part("SetDeformation", 0);
+            give_part("SetDepth", 1);
+            invoke("SetSelectedDeformation", position);
+            stream << vtkClientServerStream::End;
+            this->ExecuteStream(stream);
+            this->TakeAnchor(added);
+        }
         set_numbers(this, "Bumps", table.data(), table.size());
         vtkSMPropertyHelper(this, "SelectedDeformation").Set(static_cast<int>(rows));
         this->UpdateVTKObjects();
-        if (on_plane) this->AnchorSelected();
     }
     draw_views(this);
 }
@@ -640,23 +661,29 @@ void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* n
     if (name && std::string(static_cast<const char*>(name)) == "AnchorSelected") this->AnchorSelected();
 }
 
-void vtkSMAnamorphDeformProxy::AnchorSelected() {
-    this->UpdatePipeline();
+/// Gives a row of the table, which the server has as the selected one, what its anchor makes of it. False where there is no surface over it.
+bool vtkSMAnamorphDeformProxy::TakeAnchor(double* row) {
     this->Find("FindAnchor");
     this->UpdatePropertyInformation(this->GetProperty("SelectedAnchor"));
     const std::vector<double> anchor = numbers_of(this, "SelectedAnchor");
+    if (anchor.size() != 9 || anchor[1] == 0) return false;
+    constexpr std::size_t kColumns[9] = {2, 5, 12, 13, 14, 15, 6, 7, 8};  // c_w, a_w, q, V
+    for (std::size_t i = 0; i < 9; ++i) row[kColumns[i]] = anchor[i];
+    return true;
+}
+
+void vtkSMAnamorphDeformProxy::AnchorSelected() {
+    this->UpdatePipeline();
     std::vector<double> table = numbers_of(this, "Bumps");
     const int selected = vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt();
     const std::size_t first = static_cast<std::size_t>(std::max(selected, 0)) * kTableColumns;
-    if (anchor.size() != 9 || anchor[1] == 0 || table.size() < first + kTableColumns) {
+    if (table.size() < first + kTableColumns || !this->TakeAnchor(table.data() + first)) {
         vtkErrorMacro(
             "no part of the surface is over the centre of the selected deformation; there must be one, and "
             "the "
             "parameters be those of a plane");
         return;
     }
-    constexpr std::size_t kColumns[9] = {2, 5, 12, 13, 14, 15, 6, 7, 8};  // c_w, a_w, q, V
-    for (std::size_t i = 0; i < 9; ++i) table[first + kColumns[i]] = anchor[i];
     set_numbers(this, "Bumps", table.data(), table.size());
     this->UpdateVTKObjects();
 }

@@ -87,6 +87,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void RemoveDepths();
     void SplitBumps();
     void ShowBumps();
+    bool TakeAnchor(double* row);
     void AnchorSelected();
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
