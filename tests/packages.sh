@@ -1,94 +1,209 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Usage: tests/packages.sh [SUITE]
-# Makes the Debian packages of the release build, lets lintian look at them, and tries them in a clean root of Debian (SUITE: bookworm),
-# which is to be the release of this machine: installed by apt, one command for each host, upgraded, purged. Needs root, and Debian's
-# archive; takes a quarter of an hour where the build is there. tests/packages/test_packages.py does what can be done without.
+# Usage: tests/packages.sh [SUITE [oiio|vtk|paraview]...]
+# Makes the Debian packages of this working tree in clean roots of a release of Debian (SUITE: bookworm, trixie), lets lintian look at them, and
+# tries them in other clean roots, a host each: installed by apt, one command for each program, upgraded, purged. Packages and the roots that make
+# them stay in build/packaging, so that the next run compiles what changed. Needs root, and Debian's archive; from nothing an hour of two cores.
+# tests/packages/test_packages.py does what can be done without.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-suite="${1:-bookworm}"
 if [ "$(id -u)" -ne 0 ]; then
-    echo "packages.sh: needs root, for a root of its own" >&2
+    echo "packages.sh: needs root, for roots of its own" >&2
     exit 1
 fi
-tests/install_packages.sh build hosts packages
-cmake --preset release >/dev/null
-cmake --build build/release --target packages
+suite="${1:-bookworm}"
+[ $# -eq 0 ] || shift
+[ $# -gt 0 ] || set -- oiio vtk paraview
+tests/install_packages.sh packages
+jobs="${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
+folder="$PWD/build/packaging/$suite"
+packages="$folder/packages"
+mkdir -p "$packages" "$folder/ccache"
 
-echo "lintian:"
-if ! lintian --allow-root --fail-on error build/release/packages/*.deb; then
-    echo "packages.sh: lintian found errors" >&2
-    exit 1
-fi
-
-root="$(mktemp -d)"
-mounted=()
+# What is mounted in the root that is used now.
+root="" mounted=() tried=""
 leave() {
     local at
     for at in "${mounted[@]}"; do umount "$at" || return; done # or what is mounted would be removed
-    rm -rf "$root"
+    mounted=()
+    [ -z "$tried" ] || rm -rf "$tried"
+    tried=""
 }
 trap leave EXIT
-echo "a clean root of $suite:"
-mmdebstrap --quiet --variant=minbase "$suite" "$root"
-chmod 755 "$root" # as apt's own user finds it elsewhere
-if mount -t proc proc "$root/proc" 2>/dev/null; then
-    mounted+=("$root/proc")
-else
-    # anamorph finds the plugin by what /proc says of it.
-    echo "packages.sh: /proc cannot be mounted here" >&2
-    exit 1
-fi
+bind() {
+    mkdir -p "$2"
+    mount --bind "$1" "$2"
+    mounted=("$2" "${mounted[@]}")
+}
 in_root() {
-    chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive "$@"
+    chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 LIBGL_ALWAYS_SOFTWARE=1 OMPI_ALLOW_RUN_AS_ROOT=1 \
+        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 DEBIAN_FRONTEND=noninteractive "$@"
 }
 apt() {
     in_root apt-get -q -y --no-install-recommends "$@"
 }
-files() {
-    (cd "$root" && find . -xdev \( -path ./proc -o -path ./tmp -o -path ./var -o -path ./root -o -path ./etc/ssl -o -path ./etc/alternatives \) \
-        -prune -o -print | sort)
+# clean_root FOLDER [PACKAGE...]
+clean_root() {
+    local list
+    list="$(IFS=,; echo "${*:2}")"
+    mmdebstrap --quiet --variant=minbase --aptopt='APT::Install-Recommends "false"' --aptopt='Acquire::Check-Valid-Until "false"' \
+        --dpkgopt=force-unsafe-io --include="$list" "$suite" "$1"
+    [ ! -d "$1" ] || chmod 755 "$1" # as apt's own user finds it elsewhere
+}
+section() {
+    sed -n "/^\[$1\]$/,/^\[/{/^[a-z0-9]/p}" tests/packages.txt
 }
 
-echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/unsafe-io" # the root is gone soon
-apt update >/dev/null
-# What the hosts need, before and after: nothing of ours is to be left.
-apt install openimageio-tools python3-openimageio cmake make g++ >/dev/null
-mkdir "$root/tmp/packages"
-cp build/release/packages/*.deb "$root/tmp/packages"
-files >"$root/tmp/before"
+# make_packages HOST TOOLKIT VIEWER DEBIAN_PACKAGE...: in a root that has these.
+make_packages() {
+    local host="$1" toolkit="$2" viewer="$3" log="$folder/$1.txt" oiio=OFF
+    [ "$host" != oiio ] || oiio=ON
+    root="$folder/make-$host"
+    if [ ! -d "$root" ]; then
+        echo "$suite: a root that makes the packages for $host"
+        rm -rf "$root.new"
+        # shellcheck disable=SC2046 # words
+        clean_root "$root.new" ca-certificates ccache dpkg-dev file $(section build) $(section hosts) "${@:4}" >"$log" 2>&1 || fail "$log"
+        mv "$root.new" "$root"
+    fi
+    bind "$PWD" "$root/anamorph"
+    mount -o remount,bind,ro "$root/anamorph"
+    bind "$folder/ccache" "$root/ccache"
+    bind /proc "$root/proc"
+    rm -f "$root"/build/packages/*.deb
+    in_root env CCACHE_DIR=/ccache CCACHE_SLOPPINESS=pch_defines,time_macros CMAKE_CXX_COMPILER_LAUNCHER=ccache sh -c "
+        cmake -S /anamorph -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release -DANAMORPH_TESTS=OFF -DANAMORPH_OIIO=$oiio \
+            -DANAMORPH_TOOLKIT=$toolkit -DANAMORPH_VIEWER=$viewer -DPython3_EXECUTABLE=/usr/bin/python3 &&
+        cmake --build /build -j $jobs --target packages" >"$log" 2>&1 || fail "$log"
+    cp "$root"/build/packages/*.deb "$packages"
+    leave
+}
+fail() {
+    tail -n 40 "$1" >&2
+    echo "packages.sh: failed; the log is $1" >&2
+    exit 1
+}
 
-echo "install:"
-in_root sh -c "apt-get -q -y --no-install-recommends install /tmp/packages/*.deb" >/dev/null
-in_root sh -c '
-    set -eu
-    cd /tmp
+files() {
+    (cd "$root" && find . -xdev \( -path ./proc -o -path ./tmp -o -path ./var -o -path ./root -o -path ./etc/ssl -o -path ./etc/alternatives \) \
+        -prune -o -print | grep -v __pycache__ | sort)
+}
+# try_packages HOST OTHERS COMMANDS DEBIAN_PACKAGE...: in a clean root with these, which need nothing of ours; OTHERS are packages that are not for it.
+try_packages() {
+    local host="$1" others="$2" commands="$3" deb names=() log="$folder/try-$1.txt"
+    tried="$(mktemp -d)"
+    root="$tried"
+    echo "$host: a clean root of $suite"
+    clean_root "$root" "${@:4}" >"$log" 2>&1 || fail "$log"
+    bind /proc "$root/proc" # anamorph finds the plugin by what it says
+    mkdir -p "$root/dev/shm" "$root/tmp/packages"
+    bind /dev/shm "$root/dev/shm"
+    for deb in "$packages"/*.deb; do
+        if [[ "$(basename "$deb")" =~ ^($others)_ ]]; then continue; fi
+        cp "$deb" "$root/tmp/packages"
+        names+=("$(dpkg-deb -f "$deb" Package)")
+    done
+    files >"$root/tmp/before"
+    apt update >"$log" 2>&1 || true
+    in_root sh -c "apt-get -q -y --no-install-recommends install /tmp/packages/*.deb" >"$log" 2>&1 || fail "$log"
+    in_root sh -ec "cd /tmp; $commands" || fail "$log"
+    echo "$host: ${names[*]}: installed, tried"
+    in_root sh -c "apt-get -q -y --no-install-recommends --reinstall install /tmp/packages/*.deb" >"$log" 2>&1 || fail "$log"
+    apt purge "${names[@]}" >"$log" 2>&1 || fail "$log"
+    apt autoremove --purge >"$log" 2>&1 || fail "$log"
+    files >"$root/tmp/after"
+    if ! diff "$root/tmp/before" "$root/tmp/after"; then
+        echo "packages.sh: the purge left something, or took too much" >&2
+        exit 1
+    fi
+    echo "$host: upgraded, purged"
+    leave
+}
+
+# try_image: the Dockerfile, on an image of this Debian that is made here.
+image() {
+    buildah --root "$tried/images" --runroot "$tried/run" --storage-driver vfs "$@"
+}
+try_image() {
+    local log="$folder/try-image.txt" container
+    export BUILDAH_ISOLATION=chroot
+    tried="$(mktemp -d)"
+    echo "image: Dockerfile with packages of $suite"
+    clean_root "$tried/base.tar" >"$log" 2>&1 || fail "$log"
+    container="$(image from scratch)"
+    image add "$container" "$tried/base.tar" / >"$log" 2>&1 || fail "$log"
+    image config --env PATH=/usr/sbin:/usr/bin:/sbin:/bin "$container"
+    image commit -q "$container" "docker.io/library/debian:$suite-slim" >"$log" 2>&1 || fail "$log"
+    image build -t tried --build-arg "DEBIAN=$suite" -f plugins/packages/Dockerfile "$packages" >"$log" 2>&1 || fail "$log"
+    container="$(image from --pull-never tried)"
+    [ "$(image inspect --format '{{.OCIv1.Config.Entrypoint}}' "$container")" = "[anamorph run]" ]
+    image run "$container" -- anamorph run oiiotool --pattern fill:color=.25,.5,.75 64x32 3 -o sky.exr >"$log" 2>&1 || fail "$log"
+    image run "$container" -- anamorph run oiiotool "sky.exr.pano?to=rectilinear&size=32x24" -o view.exr >"$log" 2>&1 || fail "$log"
+    echo "image: $(image run "$container" -- anamorph hash view.exr)"
+    leave
+}
+
+oiio_commands='
     oiiotool --pattern fill:color=.25,.5,.75 64x32 3 -o sky.exr
     anamorph run oiiotool "sky.exr.pano?to=rectilinear&size=32x24" -o run.exr
     bash -lc "oiiotool \"sky.exr.pano?to=rectilinear&size=32x24\" -o login.exr"
     bash -lc "python3 -c \"import OpenImageIO as o; assert o.ImageBuf(\\\"sky.exr.pano?to=rectilinear&size=32x24\\\").spec().width == 32\""
     anamorph draw "sky.exr.pano?to=rectilinear&size=32x24" -o drawn.exr
     test "$(anamorph hash run.exr login.exr drawn.exr | cut -c1-32 | uniq | wc -l)" = 1
-    anamorph help pano >/dev/null
-    anamorph-figure --help >/dev/null
-    anamorph-machine --help >/dev/null
+    python3 -c "import anamorph, numpy as n; assert anamorph.pano(n.ones((32, 64), n.float32), size=(8, 8)).shape == (8, 8)"
+    anamorph --version
+    anamorph help pano >help.txt
+    anamorph-figure --help >help.txt
+    anamorph-machine --help >help.txt
     bash -lc "anamorph doctor"
     if anamorph doctor >/dev/null; then echo "doctor sees no missing variable" >&2; exit 1; fi
-    mkdir user && cd user
+    mkdir user
     printf "%s\n" "cmake_minimum_required(VERSION 3.25)" "project(User CXX)" "find_package(Anamorph REQUIRED)" "add_executable(user user.cpp)" \
-        "target_link_libraries(user Anamorph::oiio_ops)" >CMakeLists.txt
-    printf "%s\n" "#include <anamorph/version.h>" "#include <anamorph/oiio_ops.h>" "int main() { return *anamorph::version() == 0; }" >user.cpp
-    cmake -B build . >/dev/null && cmake --build build >/dev/null && build/user
-'
-echo "install: ok"
-in_root sh -c "apt-get -q -y --no-install-recommends --reinstall install /tmp/packages/*.deb" >/dev/null
-in_root anamorph --version
-echo "again, as an upgrade: ok"
-apt purge anamorph anamorph-openimageio libanamorph-dev >/dev/null
-apt autoremove --purge >/dev/null
-files >"$root/tmp/after"
-if ! diff <(grep -v __pycache__ "$root/tmp/before") <(grep -v __pycache__ "$root/tmp/after"); then
-    echo "packages.sh: the purge left something, or took too much" >&2
+        "target_link_libraries(user Anamorph::oiio_ops)" >user/CMakeLists.txt
+    printf "%s\n" "#include <anamorph/version.h>" "#include <anamorph/oiio_ops.h>" "int main() { return *anamorph::version() == 0; }" >user/user.cpp
+    cmake -S user -B user/build >cmake.txt && cmake --build user/build >cmake.txt && user/build/user'
+deform='
+    printf "%s\n" "from anamorph.vtk import vtkAnamorphDeform, vtkAnamorphEllipsoidMapper" "from vtkmodules.vtkFiltersSources import vtkPlaneSource" \
+        "plane = vtkPlaneSource(XResolution=20, YResolution=20)" "deform = vtkAnamorphDeform()" \
+        "deform.SetInputConnection(plane.GetOutputPort())" "deform.AddDeformation(0, 0, 1, 1, 0, 0, 1)" "deform.Update()" \
+        "assert deform.GetOutput().GetBounds()[5] > .5" >classes.py'
+vtk_commands="$deform"'
+    python3 classes.py
+    anamorph-view --help >help.txt
+    anamorph-warp --help >help.txt'
+# Nothing is told of a plugin.
+paraview_commands="$deform"'
+    printf "%s\n" "from paraview.simple import *" "surface = AnamorphDeform(Input=Plane(XResolution=20, YResolution=20), Deformations=[0, 0, 1, 1, 0, 0, 1, 0, 1])" \
+        "surface.UpdatePipeline()" "assert surface.GetDataInformation().GetBounds()[5] > .5" "import anamorph" >plugin.py
+    pvpython plugin.py
+    mpiexec -n 2 pvbatch plugin.py
+    pvpython classes.py'
+
+of_vtk='libvtk9-anamorph|python3-vtk9-anamorph|anamorph-view' of_paraview='paraview-anamorph|python3-paraview-anamorph'
+# shellcheck disable=SC2046 # words
+for host in "$@"; do
+    case "$host" in
+        oiio) make_packages oiio NONE OFF help2man mkdocs mkdocs-material ;;
+        vtk) make_packages vtk VTK ON libvtk9-dev python3-vtk9 $(section vtk) ;;
+        paraview) make_packages paraview PARAVIEW OFF $(section paraview) ;;
+        *)
+            echo "packages.sh: $host: must be oiio, vtk or paraview" >&2
+            exit 1
+            ;;
+    esac
+done
+echo "lintian:"
+if ! lintian --allow-root --fail-on error "$packages"/*.deb; then
+    echo "packages.sh: lintian found errors" >&2
     exit 1
 fi
-echo "purge: ok"
+for host in "$@"; do
+    case "$host" in
+        oiio)
+            try_packages oiio "$of_vtk|$of_paraview" "$oiio_commands" openimageio-tools python3-openimageio cmake make g++
+            try_image
+            ;;
+        vtk) try_packages vtk "$of_paraview|libanamorph-dev" "$vtk_commands" python3-vtk9 ;;
+        paraview) try_packages paraview "$of_vtk|libanamorph-dev" "$paraview_commands" python3-paraview paraview openmpi-bin ;;
+    esac
+done

@@ -10,7 +10,7 @@ else()
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)
-install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir})
+install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir} COMPONENT development)
 # What the example, anamorph-view and anamorph-warp take beyond that. It is found here, and not in their folders alone: the packages that VTK
 # finds for it (MPI) have to be known where VTK's own targets are, or nothing is generated.
 if(ANAMORPH_TOOLKIT STREQUAL "VTK" AND (ANAMORPH_TESTS OR ANAMORPH_VIEWER))
@@ -33,7 +33,13 @@ foreach(module IN LISTS required_modules)
         message(FATAL_ERROR "ANAMORPH_TOOLKIT=${ANAMORPH_TOOLKIT}: its module ${module} is missing")
     endif()
 endforeach()
+# Those of a ParaView are called like its own, so that they can be installed beside VTK's.
+set(module_names VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+if(ANAMORPH_TOOLKIT STREQUAL "PARAVIEW")
+    list(APPEND module_names LIBRARY_NAME_SUFFIX pv${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR})
+endif()
 vtk_module_build(MODULES ${anamorph_modules}
+                 ${module_names}
                  PACKAGE AnamorphVTK
                  INSTALL_EXPORT AnamorphVTK
                  CMAKE_DESTINATION ${package_dir}
@@ -77,4 +83,5 @@ file(GLOB drawing_classes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/vtk_f
 list(TRANSFORM drawing_classes REPLACE "\\.h$" "")
 configure_file(${PROJECT_SOURCE_DIR}/vtk_filters/python/__init__.py
                ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py DESTINATION ${python_dir}/anamorph)
+# In packages the module of the operations is in its place.
+install(FILES ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py DESTINATION ${python_dir}/anamorph COMPONENT python_alone)

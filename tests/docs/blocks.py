@@ -64,6 +64,7 @@ LINES = [
     Line(r"tests/nightly\.sh ", (), why="it takes hours, and runs this test before them"),
     Line(r"cmake --preset release -DANAMORPH_TESTS=OFF && ", (), why="tests/packages/test_packages.py makes the packages of the build"),
     Line(r"sudo apt install \./", (), why="tests/packages.sh installs them in a clean Debian"),
+    Line(r"docker (build|run) ", (), why="tests/packages.sh does what they do, by Buildah"),
     Line(r"anamorph (run|doctor)", (), why="tests/command/test_hosts.py runs both"),
     Line(r"sudo apt-get install ", (), why="these packages conflict with ParaView's; test_blocks.py looks for their names"),
     Line(r"tests/install_packages\.sh ", (), why="tests install nothing; test_blocks.py looks for the sections"),

@@ -9,32 +9,19 @@ import subprocess
 import tempfile
 import unittest
 
-BUILD = os.environ["ANAMORPH_BUILD_DIR"]
+import debs
+from debs import BUILD, output
+
 NAMES = ["anamorph", "anamorph-openimageio", "libanamorph-dev", "python3-anamorph"]
 
 
-def output(*command, **more):
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=200, **more)
-    if done.returncode:
-        raise AssertionError(f"{command} failed ({done.returncode}):\n{done.stdout}\n{done.stderr}")
-    return done.stdout
-
-
 def setUpModule():
-    global FOLDER, DEBS, ROOT
-    folder = tempfile.TemporaryDirectory(prefix="anamorph-packages-")
-    unittest.addModuleCleanup(folder.cleanup)
-    FOLDER = pathlib.Path(folder.name)
-    output(os.environ["ANAMORPH_CPACK"], "--config", f"{BUILD}/CPackConfig.cmake", "-B", FOLDER / "made", "-D",
-           "CPACK_DEBIAN_COMPRESSION_TYPE=gzip", umask=0o022)
-    DEBS = {output("dpkg-deb", "-f", deb, "Package").strip(): deb for deb in sorted((FOLDER / "made").glob("*.deb"))}
-    ROOT = FOLDER / "root"
-    for deb in DEBS.values():
-        output("dpkg-deb", "-x", deb, ROOT)
+    global ROOT, DEBS
+    ROOT, DEBS = debs.make()
 
 
 def field(package, name):
-    return output("dpkg-deb", "-f", DEBS[package], name).strip()
+    return debs.field(DEBS[package], name)
 
 
 def files_of(package):
@@ -153,7 +140,7 @@ class Purge(unittest.TestCase):
         as_root = [] if os.getuid() == 0 else ["fakeroot"]
         if as_root and not shutil.which("fakeroot"):
             self.skipTest("fakeroot is not there")
-        root = FOLDER / "installed"
+        root = ROOT.parent / "installed"
         (root / "var/lib/dpkg/info").mkdir(parents=True)
         (root / "var/lib/dpkg/updates").mkdir()
         (root / "var/lib/dpkg/status").touch()
