@@ -46,7 +46,7 @@ demo_first() {
 }
 
 step demo-first demo_first
-step build-release build release
+step build-release build release -DANAMORPH_NIGHTLY=ON
 step test-release-long run_tests release -L nightly
 step build-vtk build_vtk
 step test-vtk-long with_vtk run_tests vtk -L nightly
