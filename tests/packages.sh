@@ -47,7 +47,7 @@ clean_root() {
     local list
     list="$(IFS=,; echo "${*:2}")"
     mmdebstrap --quiet --variant=minbase --aptopt='APT::Install-Recommends "false"' --aptopt='Acquire::Check-Valid-Until "false"' \
-        --dpkgopt=force-unsafe-io --include="$list" "$suite" "$1"
+        --dpkgopt=force-unsafe-io ${list:+--include="$list"} "$suite" "$1" || return
     [ ! -d "$1" ] || chmod 755 "$1" # as apt's own user finds it elsewhere
 }
 section() {
@@ -110,7 +110,8 @@ try_packages() {
     echo "$host: ${names[*]}: installed, tried"
     in_root sh -c "apt-get -q -y --no-install-recommends --reinstall install /tmp/packages/*.deb" >"$log" 2>&1 || fail "$log"
     apt purge "${names[@]}" >"$log" 2>&1 || fail "$log"
-    apt autoremove --purge >"$log" 2>&1 || fail "$log"
+    # What a package of the host recommends came with ours all the same.
+    apt -o APT::AutoRemove::RecommendsImportant=false -o APT::AutoRemove::SuggestsImportant=false autoremove --purge >"$log" 2>&1 || fail "$log"
     files >"$root/tmp/after"
     if ! diff "$root/tmp/before" "$root/tmp/after"; then
         echo "packages.sh: the purge left something, or took too much" >&2
@@ -164,7 +165,7 @@ oiio_commands='
     cmake -S user -B user/build >cmake.txt && cmake --build user/build >cmake.txt && user/build/user'
 deform='
     printf "%s\n" "from anamorph.vtk import vtkAnamorphDeform, vtkAnamorphEllipsoidMapper" "from vtkmodules.vtkFiltersSources import vtkPlaneSource" \
-        "plane = vtkPlaneSource(XResolution=20, YResolution=20)" "deform = vtkAnamorphDeform()" \
+        "plane = vtkPlaneSource()" "plane.SetResolution(20, 20)" "deform = vtkAnamorphDeform()" \
         "deform.SetInputConnection(plane.GetOutputPort())" "deform.AddDeformation(0, 0, 1, 1, 0, 0, 1)" "deform.Update()" \
         "assert deform.GetOutput().GetBounds()[5] > .5" >classes.py'
 vtk_commands="$deform"'

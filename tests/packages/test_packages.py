@@ -6,6 +6,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -45,6 +46,9 @@ class Packages(unittest.TestCase):
         self.assertNotRegex(field("anamorph", "Depends"), "openimageio|vtk|paraview")
         self.assertIn("libc6", field("anamorph", "Depends"))
         self.assertIn("anamorph-openimageio", field("anamorph", "Recommends"))
+        # Python's own version, since a part is C++.
+        minor = sys.version_info.minor
+        self.assertIn(f"python3 (>= 3.{minor}~), python3 (<< 3.{minor + 1}~)", field("python3-anamorph", "Depends"))
         for needed in ("libglm-dev", "libhwy-dev", "libpugixml-dev", "libopenimageio-dev (<< "):
             self.assertIn(needed, field("libanamorph-dev", "Depends"))
 
