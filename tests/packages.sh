@@ -75,7 +75,11 @@ make_packages() {
         cmake -S /anamorph -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release -DANAMORPH_TESTS=OFF -DANAMORPH_OIIO=$oiio \
             -DANAMORPH_TOOLKIT=$toolkit -DANAMORPH_VIEWER=$viewer -DPython3_EXECUTABLE=/usr/bin/python3 &&
         cmake --build /build -j $jobs --target packages" >"$log" 2>&1 || fail "$log"
-    cp "$root"/build/packages/*.deb "$packages"
+    local deb
+    for deb in "$root"/build/packages/*.deb; do
+        rm -f "$packages/$(dpkg-deb -f "$deb" Package)"_*.deb # of another version
+        cp "$deb" "$packages"
+    done
     leave
 }
 fail() {

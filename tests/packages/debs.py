@@ -2,6 +2,7 @@
 """The Debian packages of a build, made and unpacked for a test."""
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -27,6 +28,13 @@ def make():
     for deb in debs.values():
         output("dpkg-deb", "-x", deb, root)
     return root, debs
+
+
+def check_by_lintian(test, debs):
+    if not shutil.which("lintian"):
+        test.skipTest("lintian is not there")
+    more = ["--allow-root"] if os.getuid() == 0 else []
+    test.assertNotRegex(output("lintian", "--fail-on", "none", *more, *debs), r"(?m)^E:")
 
 
 def field(deb, name):

@@ -30,6 +30,9 @@ class ParaViewPackages(unittest.TestCase):
             self.assertIn(needed, field(NAMES[1], "Depends"))
         self.assertEqual(field(NAMES[1], "Conflicts"), "python3-vtk9-anamorph")
 
+    def test_lintian_has_no_error(self):
+        debs.check_by_lintian(self, DEBS.values())
+
     def test_no_file_is_that_of_another_package(self):
         files = {path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*") if not path.is_dir()}
         # Those of the operations and of the modules for VTK.

@@ -126,22 +126,12 @@ HWY_INLINE hn::Vec<D> SumsInDouble(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c
 #endif
 #endif
 
-#if HWY_NATIVE_FMA
 /// a b + c of floats, rounded once.
 template <class V>
 HWY_INLINE V Fused(V a, V b, V c) {
+#if HWY_NATIVE_FMA
     return hn::MulAdd(a, b, c);
-}
 #else
-#if HWY_TARGET == HWY_SCALAR && !HWY_ARCH_WASM
-// A copy in each place would take long to compile, for processors of before 2008.
-#define ANAMORPH_FUSED_INLINE HWY_NOINLINE
-#else
-#define ANAMORPH_FUSED_INLINE HWY_INLINE
-#endif
-/// a b + c of floats, rounded once.
-template <class V>
-ANAMORPH_FUSED_INLINE V Fused(V a, V b, V c) {
     const hn::DFromV<V> d;
     static_assert(sizeof(hn::TFromV<V>) == sizeof(float));
     if constexpr (HWY_TARGET != HWY_SCALAR && hn::MaxLanes(d) <= 2) {
@@ -152,9 +142,8 @@ ANAMORPH_FUSED_INLINE V Fused(V a, V b, V c) {
         if (HWY_UNLIKELY(MayBeRoundedTwice(d, rounded, low_bits))) return FusedOneByOne(d, a, b, c);
         return rounded;
     }
-}
-#undef ANAMORPH_FUSED_INLINE
 #endif
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace anamorph::simd

@@ -21,10 +21,12 @@
 //
 // NaN and infinities come out as IEEE has them for + - * / sqrt; the functions give NaN for NaN.
 
-// How functions of several operations are compiled: single numbers, for processors of before 2008, call them, as a copy in each
-// formula would take long to compile.
+// Are functions of several operations called? They are where numbers are single, for processors of before 2008: a copy in each formula would
+// take long to compile. (WebAssembly has its doubles so.)
+#undef ANAMORPH_LANES_CALLED
+#define ANAMORPH_LANES_CALLED (HWY_TARGET == HWY_SCALAR && !HWY_ARCH_WASM)
 #undef ANAMORPH_LANES_INLINE
-#if HWY_TARGET == HWY_SCALAR && !HWY_ARCH_WASM
+#if ANAMORPH_LANES_CALLED
 #define ANAMORPH_LANES_INLINE inline
 #else
 #define ANAMORPH_LANES_INLINE HWY_INLINE

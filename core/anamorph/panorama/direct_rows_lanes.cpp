@@ -19,9 +19,10 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
-// In one function each the formulas are fast, and take long to compile: not for processors without vectors, and the reading in order.
+// In one function each the formulas are fast, and take long to compile: with sanitizers minutes, and single numbers read them mostly to learn
+// their order.
 #undef ANAMORPH_FLATTEN
-#if defined(ANAMORPH_SANITIZED) || HWY_TARGET == HWY_SCALAR
+#if defined(ANAMORPH_SANITIZED) || ANAMORPH_LANES_CALLED
 #define ANAMORPH_INLINE inline
 #define ANAMORPH_FLATTEN
 #else
