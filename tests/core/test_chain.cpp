@@ -780,11 +780,11 @@ TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
             Real largest = 0, sum = 0;
             for (int y = 1; y + 1 < size.height; ++y)
                 for (int x = 1; x + 1 < size.width; ++x) {
-                    // Pixels next to those that differ, and some others.
+                    // A third of the pixels next to those that differ, and some others.
                     const float here = at(x, y);
-                    if (here == at(x - 1, y) && here == at(x + 1, y) && here == at(x, y - 1) &&
-                        here == at(x, y + 1) && (x + 7 * y) % 397 != 0)
-                        continue;
+                    const bool differs = here != at(x - 1, y) || here != at(x + 1, y) ||
+                                         here != at(x, y - 1) || here != at(x, y + 1);
+                    if ((x + 7 * y) % (differs ? 3 : 397) != 0) continue;
                     const Real truth = share_of(links, x, y);
                     if (!std::isfinite(truth)) continue;
                     const Real off = std::fabs(here - truth);

@@ -47,6 +47,10 @@ OIIO::ImageBuf panorama(int width, int height, OIIO::TypeDesc type = OIIO::TypeF
 void write_panorama(const std::string& name, int width, int height, OIIO::TypeDesc type = OIIO::TypeFloat,
                     int channels = 3, int tile = 64);
 void write_image(const OIIO::ImageBuf& image, const std::string& name);
+/// Writes an image of floats that are all 1.
+void write_white(const std::string& name, int width, int height, int channels);
+/// Draws a recipe into a file of floats, as `oiiotool NAME -d float -o FILE` does, which takes a third of a second to start.
+void draw(const std::string& name, const std::string& file);
 
 /// The pixels of an image file as they are stored; the test fails where it cannot be read.
 struct Pixels {
@@ -62,6 +66,9 @@ std::vector<float> read_floats(const std::string& name, int miplevel = 0);
 
 /// The message of an open that fails; "" and a failed test where it succeeds.
 std::string open_error(const std::string& name);
+
+/// A quarter of so many rounds of a long test; all of them where ANAMORPH_NIGHTLY is set.
+int rounds(int at_night);
 
 void write_text(const std::string& name, const std::string& text);
 
@@ -83,7 +90,7 @@ std::vector<std::byte> bytes(const OIIO::ImageBuf& image);
 /// Checks that tile sizes, threads, and a cut of 40 x 30 pixels at (x, y) never change a recipe's pixels.
 void expect_one_picture(const std::string& name, int x, int y);
 
-/// Calls body(first, last) for 200 rounds, then for 1000 more, and checks that these leave no handles open,
+/// Calls body(first, last) for 200 rounds, then for rounds(1000) more, and checks that these leave no handles open,
 /// and at most so many megabytes behind.
 void expect_nothing_left_behind(const std::function<void(int, int)>& body, double megabytes);
 

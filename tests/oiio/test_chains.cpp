@@ -167,7 +167,7 @@ TEST_F(Chains, AreNotJoinedWhereTheyWouldBeOtherPictures) {
         EXPECT_THAT(chain_of(name), StartsWith(c.outer.substr(2, c.outer.find('?') - 2) + " of a picture"));
         EXPECT_THAT(chain_of(name), testing::EndsWith(": " + c.reason));
         // As of a file that holds all that the inner one has.
-        ASSERT_EQ(run("oiiotool -i '" + c.inner + "' -d float -o inner.exr").status, 0);
+        draw(c.inner, "inner.exr");
         EXPECT_EQ(largest_difference(read_floats(name), read_floats(c.outer + joins + "src=inner.exr")), 0);
     }
 }
@@ -210,7 +210,7 @@ std::vector<float> channel_of(const std::vector<float>& all, std::size_t channel
 // Where the picture in the middle ends the chain fades as if that had been drawn first, and eight times as large, but for what the filter
 // blurs such an edge by: it takes more than the pixel. (By area: tests/core/test_chain.cpp.)
 TEST_F(Chains, HaveSoftEdges) {
-    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 800x600 3 -d float -o white.exr").status, 0);
+    write_white("white.exr", 800, 600, 3);
     const auto chain = [](const std::string& outer, int scale, const std::string& keys) {
         return "v.pano?" + outer + keys +
                "&alpha=1&src=(m.pano?src=white.exr&from=rectilinear&srcfov=120&to=rectilinear&fov=" +
@@ -245,7 +245,7 @@ TEST_F(Chains, HaveSoftEdges) {
 
 // Between two fisheyes of 150 degrees there is a band that neither sees: a pixel shows as much of them as it lies within, by samples of it.
 TEST_F(Chains, HaveSoftRimsOfTwoFisheyes) {
-    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 800x400 3 -d float -o pair.exr").status, 0);
+    write_white("pair.exr", 800, 400, 3);
     constexpr int kSide = 160, kTimes = 16;
     const std::string view =
         "v.pano?from=equirectangular&to=rectilinear&fov=50&yaw=90&pitch=45&size=160x160&alpha=1&src=(m.pano?"
@@ -348,10 +348,9 @@ TEST_F(Chains, GoThroughSmallWarps) {
     write_text("rough.json", rough + "]}");
     for (const char* const size : {"2x2", "3x2", "2x9", "24x16", "35x20", "64x64"}) {
         SCOPED_TRACE(size);
-        ASSERT_EQ(run("oiiotool 'plate.exr.map?u=x*0.9+0.03*width*sin(y/11)&v=y*0.95+1&size=" +
-                      std::string(size) + "&output=stmap' -d float -o st.exr")
-                      .status,
-                  0);
+        draw("plate.exr.map?u=x*0.9+0.03*width*sin(y/11)&v=y*0.95+1&size=" + std::string(size) +
+                 "&output=stmap",
+             "st.exr");
         const std::string view = "v.pano?from=rectilinear&srcfov=84&fov=70&yaw=6&size=90x70";
         for (const std::string& keys :
              {std::string("mesh=st.exr"), "mesh=rough.json&size=" + std::string(size)}) {

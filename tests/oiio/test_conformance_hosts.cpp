@@ -25,8 +25,7 @@ class Hosts : public InFolder {
 };
 
 void expect_same_images(const std::string& a, const std::string& b) {
-    const Ran ran = run("idiff -fail 0 -warn 0 '" + a + "' '" + b + "'");
-    EXPECT_EQ(ran.status, 0) << ran.text;
+    EXPECT_EQ(largest_difference(read_floats(a), read_floats(b)), 0) << a << " " << b;
 }
 
 TEST_F(Hosts, conformance_01_every_way_to_find_the_plugin) {
@@ -206,7 +205,8 @@ TEST_F(Hosts, an_image_in_memory_is_a_source) {
     ASSERT_EQ(
         run("oiiotool city.exr --resize 128x64 -o small.exr city.exr --resize 64x32 -o tiny.exr").status, 0);
     expect_same_images("one.exr", "small.exr.pano?size=48&yaw=20");
-    expect_same_images("two.exr", "tiny.exr.pano?size=48&yaw=20");
+    const Ran same = run("idiff -fail 0 -warn 0 two.exr 'tiny.exr.pano?size=48&yaw=20'");
+    EXPECT_EQ(same.status, 0) << same.text;
     EXPECT_FALSE(fs::exists("A.anabuf"));
     // Data windows and integer types too.
     const Ran cropped =

@@ -20,7 +20,7 @@ class Coverage : public InFolder {
         write_panorama("plate.exr", 120, 80);
         write_panorama("bytes.png", 120, 80, OIIO::TypeUInt8);
         write_panorama("rgba.exr", 120, 80, OIIO::TypeFloat, 4);
-        ASSERT_EQ(run("oiiotool --pattern constant:color=1 120x80 1 -d float -o white.exr").status, 0);
+        write_white("white.exr", 120, 80, 1);
         write_text("grid.json", R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [[-0.1, 0.05],
             [0.5, -0.2], [1.3, 0], [0, 0.5], [0.55, 0.47], [1.1, 0.5], [0.2, 1], [0.5, 1.2], [1, 0.9]]})");
         write_text("lines.json", R"({"features": [{"line": [[40, 30, 80, 40], [50, 25, 90, 50]]}]})");
@@ -135,8 +135,8 @@ TEST_F(Coverage, IsFadedAsColorsAre) {
     const float white[] = {1, 1, 1};
     OIIO::ImageBufAlgo::fill(over, white);
     write_image(over, "over.exr");
-    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 200x100 3 -d float -o globe.exr").status, 0);
-    ASSERT_EQ(run("oiiotool --pattern constant:color=1,1,1 90x60 3 -d float -o cube.exr").status, 0);
+    write_white("globe.exr", 200, 100, 3);
+    write_white("cube.exr", 90, 60, 3);
     for (const std::string recipe :
          {"over.exr.pano?from=rectilinear&srcfov=70&fov=150&yaw=20&size=50x40",
           "over.exr.pano?from=rectilinear&srcfov=70&fov=120&yaw=20&size=50x40",
