@@ -42,6 +42,10 @@ async function main() {
   }
   assert(count >= 10, "the list is too short");
 
+  const mesh = (direction) => JSON.stringify({ columns: 1, rows: 1, units: "fractions", direction, vertices: [[0, 0], [1, 0], [0, 1], [1, 1]] });
+  core.file("pulls.json", mesh("pull"));
+  core.file("pushes.json", mesh("push"));
+  core.file("points.csv", "0,0,1,1\n");
   for (const [recipe, message] of [
     ["pano?to=flat", /to=flat: must be one of/],
     ["pano?fov=0", /fov=0/],
@@ -56,11 +60,21 @@ async function main() {
     ["", /recipe/],
     ["pano?alpha=1", /alpha/],
     ["pano?scheme=hardware", /scheme=hardware is not in this build/],
+    ["pano?scheme=residual", /scheme=residual is not in this build/],
+    ["pano?to=formula&ray_x=1&ray_y=0&ray_z=0&size=64x64", /to=formula is not in this build/],
+    ["pano?stereo=top-bottom", /stereo=top-bottom is not in this build/],
+    ["pano?shutter=1", /a film is not in this build/],
+    ["lens?lens=ptlens:b=-0.1&scheme=residual", /scheme=residual is not in this build/],
+    ["map?u=x&v=y&direction=push", /direction=push is not in this build/],
+    ["warp?points=points.csv", /points=points\.csv is not in this build/],
+    ["warp?mesh=pulls.json", /pulls\.json.*, a mesh that pulls, is not in this build/],
+    ["warp?mesh=pushes.json&output=mesh", /output=mesh is not in this build/],
     ["pano?lens=lensfun:lens=x", /lens/],
   ])
     assert.throws(() => core.plan(recipe), message, recipe);
   assert.throws(() => core.sample(1000), /height=1000: must be/);
-  assert(core.plan("pano?to=fisheye&size=64x64").width === 64, "and goes on after that");
+  for (const recipe of ["pano?to=fisheye&size=64x64", "warp?mesh=pushes.json&size=64x64"])
+    assert(core.plan(recipe).width === 64 && core.draw(0, 1).length, `${recipe} after that`);
   if (wrong) throw new Error(`${wrong} of ${count} views have another hash than the desktop program's`);
   console.log(`${count} views have the hashes of the desktop program`);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formulas of charts and lenses read with four jets at once: compiled once, in chart_numbers.cpp.
+// The formulas of charts and lenses read with four jets at once: compiled once, in chart_bounds.cpp.
 #pragma once
 
 #include "anamorph/chart/chart_numbers.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formulas of charts and lenses read near the middle of a block (number/near.h): compiled once, in chart_numbers.cpp.
+// The formulas of charts and lenses read near the middle of a block (number/near.h): compiled once, in chart_near.cpp.
 #pragma once
 
 #include "anamorph/chart/chart_numbers.h"

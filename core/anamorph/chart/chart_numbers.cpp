@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// All numbers in one file: a formula that changes is compiled here, and for vectors.
+// The numbers of pixels; those that stand for many at once have files of their own, chart_bounds.cpp and chart_near.cpp.
 #include "anamorph/chart/chart_numbers.h"
 
 #include "anamorph/chart/chart_formulas.h"
 #include "anamorph/chart/chart_glsl.h"
-#include "anamorph/chart/chart_jets.h"
-#include "anamorph/chart/chart_near.h"
 
 namespace anamorph {
 
@@ -26,10 +24,6 @@ GlslNumber lens_formula::radial_root(const LensTerms& lens, const GlslNumber& va
 }
 
 ANAMORPH_CHART_NUMBERS()
-ANAMORPH_CHART_POINTS(, simd::TaylorJets)
-ANAMORPH_CHART_POINTS(, simd::BoundJets)
-ANAMORPH_CHART_POINTS(, NearBound<float>)
-ANAMORPH_CHART_POINTS(, NearBound<double>)
 template Point<GlslJet> Chart::local_point(const Ray<GlslJet>&, const Branch&) const;
 template GlslNumber Chart::sees(const Ray<GlslNumber>&, int) const;
 

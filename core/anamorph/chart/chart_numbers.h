@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formulas of charts and lenses read with the numbers that most source files need: compiled once, in chart_numbers.cpp.
+// The formulas of charts and lenses read with the numbers that most source files need: compiled once, in chart_numbers.cpp
+// and chart_bounds.cpp.
 #pragma once
 
 #include "anamorph/chart/chart.h"
@@ -21,25 +22,28 @@ namespace anamorph {
 #define ANAMORPH_CHART_CREASE(external, T)                            \
     external template T Chart::crease(const T&, const T&, int) const; \
     external template T Chart::crease(const Ray<T>&) const;
-/// Declares all functions of charts with all numbers that they are read with.
-#define ANAMORPH_CHART_NUMBERS(external)                  \
-    ANAMORPH_CHART_POINTS(external, double)               \
+/// Declares all functions of charts with the numbers of a pixel: its point and how that moves.
+#define ANAMORPH_CHART_NUMBERS(external)          \
+    ANAMORPH_CHART_POINTS(external, double)       \
+    ANAMORPH_CHART_POINTS(external, Jet1<double>) \
+    ANAMORPH_CHART_SIGHT(external, double)        \
+    ANAMORPH_CHART_CREASE(external, double)
+/// The same with the numbers of which bounds are made, and with long double.
+#define ANAMORPH_CHART_BOUNDS(external)                   \
     ANAMORPH_CHART_POINTS(external, long double)          \
     ANAMORPH_CHART_POINTS(external, Interval)             \
     ANAMORPH_CHART_POINTS(external, Rounded<double>)      \
     ANAMORPH_CHART_POINTS(external, Rounded<long double>) \
-    ANAMORPH_CHART_POINTS(external, Jet1<double>)         \
     ANAMORPH_CHART_POINTS(external, Jet1<Interval>)       \
     ANAMORPH_CHART_POINTS(external, Jet2<Interval>)       \
-    ANAMORPH_CHART_SIGHT(external, double)                \
     ANAMORPH_CHART_SIGHT(external, long double)           \
     ANAMORPH_CHART_SIGHT(external, Interval)              \
     ANAMORPH_CHART_SIGHT(external, Rounded<double>)       \
     ANAMORPH_CHART_SIGHT(external, Rounded<long double>)  \
-    ANAMORPH_CHART_CREASE(external, double)               \
     ANAMORPH_CHART_CREASE(external, Interval)             \
     external template Interval Chart::sees_without_lens(const Ray<Interval>&, int) const;
 
 ANAMORPH_CHART_NUMBERS(extern)
+ANAMORPH_CHART_BOUNDS(extern)
 
 }  // namespace anamorph

@@ -7,6 +7,7 @@
 
 #include "anamorph/mesh/hermite.h"
 #include "anamorph/mesh/window_map.h"
+#include "anamorph/parameter/left_out.h"
 #include "anamorph/plan/block_writer.h"
 
 namespace anamorph {
@@ -791,7 +792,7 @@ BlockPolynomial InversePlan::bicubic(const Block& block) const noexcept {
 
 std::shared_ptr<const MapLink> InversePlan::link() const {
     const auto plan = std::static_pointer_cast<const InversePlan>(weak_from_this().lock());
-    return plan && joins(m_scheme)
+    return !kIsSmall && plan && joins(m_scheme)
                ? window_link(std::make_shared<const InverseWindows>(plan), m_scheme, m_tol)
                : nullptr;
 }

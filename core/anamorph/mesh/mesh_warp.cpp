@@ -38,6 +38,7 @@ std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source
     if (mesh.direction == Direction::push)
         return std::make_unique<InversePlan>(Mesh(mesh, source, target, options.amount, map.name),
                                              options.scheme, options.tol, map.name);
+    if (kIsSmall) refuse_left_out(map.name + ", a mesh that pulls,");
     if (StMapPlan::serves(mesh, target))
         return std::make_unique<StMapPlan>(mesh, target, source, options.amount, options.scheme, options.tol,
                                            map.name);
@@ -55,6 +56,7 @@ double folded_fraction(const WarpPlan& plan, const ParallelFor& parallel_for) {
 /// The function that draws a mesh over its picture: where it lies, or, where it pushes, where its edges go.
 std::function<void(const PixelRows&)> mesh_overlay(const WarpMap& map, const Size& source, const Size& target,
                                                    double amount) {
+    if (kIsSmall) refuse_left_out("output=mesh");
     const auto refuse = [&](const std::string& why) {
         throw Error("output", "mesh", "must be another of " + map.name + ", which " + why);
     };

@@ -8,6 +8,7 @@
 #include "anamorph/image/picture.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -128,6 +129,7 @@ std::unique_ptr<const Pictures> film_pictures(const OperationInput& input, MakeP
     const Shutter shutter = read_shutter(input.values);
     Sequence sequence(input);
     if (!sequence.is_film() && shutter.samples == 1) return make(input.values);
+    if (kIsSmall) refuse_left_out("a film");
     return std::make_unique<FilmPictures>(std::move(sequence), shutter, std::move(make));
 }
 

@@ -5,6 +5,7 @@
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -95,6 +96,7 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     text.definitions = values.definitions();
     check_frame(values, text);
     const bool pushes = values.text("direction") == "push";
+    if (kIsSmall && pushes) refuse_left_out("direction=push");
     if (pushes && values.text("scheme") == "direct")
         throw Error("scheme", "direct", "is of direction=pull: must be auto, exact, blocks or residual");
     const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions",

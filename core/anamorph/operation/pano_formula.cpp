@@ -11,6 +11,7 @@
 #include "anamorph/operation/rows.h"
 #include "anamorph/panorama/formula_view_plan.h"
 #include "anamorph/panorama/inverse_view_plan.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -187,6 +188,7 @@ bool has_formula(const ParameterValues& values) {
 }
 
 std::unique_ptr<const Pictures> pictures_of_formula(const ParameterValues& values, const SourceFacts& facts) {
+    if (kIsSmall) refuse_left_out("to=formula");
     refuse_what_formulas_have_not(values);
     if (!is_any_given(values, kPoints)) return pictures_of(rays_of(values), values, facts);
     if (is_any_given(values, kRays))

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "anamorph/operation/rows.h"
+#include "anamorph/parameter/left_out.h"
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
@@ -34,6 +35,7 @@ ParameterValues Sequence::values_at(double time) const {
 }
 
 void Sequence::read_keys(const std::string& text, const std::string& name) {
+    if (kIsSmall) refuse_left_out("keys=" + printable(name));
     m_keys = parse_key_frames_json(text, name);
     for (const NamedKeyFrames& keys : m_keys) {
         const ParameterTable& table = m_values.table();

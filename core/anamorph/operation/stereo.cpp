@@ -7,6 +7,7 @@
 
 #include "anamorph/image/part_source.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/parameter/left_out.h"
 
 namespace anamorph {
 namespace {
@@ -120,6 +121,7 @@ Eyes::Eyes(const ParameterValues& values, const SourceFacts& facts)
             throw Error("eye", eye, "must be given together with stereo=top-bottom or side-by-side");
         return;
     }
+    if (kIsSmall) refuse_left_out("stereo=" + stereo);
     if ((m_are_above ? facts.height : facts.width) % 2 != 0)
         throw Error("stereo", stereo,
                     std::string("must be of a source of even ") + (m_are_above ? "height" : "width") +
@@ -142,7 +144,7 @@ SourceFacts Eyes::facts_of_one() const {
 }
 
 std::unique_ptr<const Pictures> Eyes::pictures(std::unique_ptr<const Pictures> of_one) const {
-    if (!m_are_two) return of_one;
+    if (kIsSmall || !m_are_two) return of_one;
     return std::make_unique<StereoPictures>(std::move(of_one), *this);
 }
 

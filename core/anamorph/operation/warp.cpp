@@ -166,6 +166,7 @@ struct StMapReading {
 
 WarpMap read_stmap(const std::string& name, const StMapReading& how, const SideFileReader& reader) {
     const std::string what = "ST-map \"" + printable(name) + "\"";
+    if (kIsSmall) refuse_left_out(what);
     const std::unique_ptr<SideImage> image = reader.image("mesh", name);
     const Size size = image->size();
     const std::string shape = std::to_string(size.width) + "x" + std::to_string(size.height);
@@ -196,6 +197,7 @@ std::shared_ptr<const WarpMap> read_mesh(const SideFile& file, const StMapReadin
 }
 
 std::shared_ptr<const WarpMap> read_points(const SideFile& file, const SideFileReader& reader) {
+    if (kIsSmall) refuse_left_out("points=" + printable(file.name));
     return read_once<WarpMap>(file, "points",
                               [&] { return parse_warp_file(reader.text(file.name), file.name); });
 }

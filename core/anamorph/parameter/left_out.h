@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a small build lacks: machines, projects of Hugin, control points that lie anywhere.
+// What a small build lacks, since no control of the page reaches it (docs/web.md lists it).
 #pragma once
 
 #include <string>

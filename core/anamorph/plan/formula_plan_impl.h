@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "anamorph/parameter/left_out.h"
 #include "anamorph/plan/direct_blocks.h"
 #include "anamorph/plan/exact_bounds.h"
 #include "anamorph/plan/formula_plan.h"
@@ -27,6 +28,7 @@ FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options, const 
       m_options(options),
       m_orders(orders) {
     check_tol(options.tol);
+    if (kIsSmall && options.scheme == Scheme::residual) refuse_left_out("scheme=residual");
 }
 
 template <class Map>
@@ -88,7 +90,7 @@ Jacobian FormulaPlan<Map>::jacobian(double x, double y, int piece) const noexcep
 template <class Map>
 std::shared_ptr<const MapLink> FormulaPlan<Map>::link() const {
     const bool is_free = m_options.scheme == Scheme::automatic || m_options.scheme == Scheme::exact;
-    return is_free ? std::make_shared<const LinkOf<Map>>(m_map, m_options) : nullptr;
+    return is_free && !kIsSmall ? std::make_shared<const LinkOf<Map>>(m_map, m_options) : nullptr;
 }
 
 template <class Map>

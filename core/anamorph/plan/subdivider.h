@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "anamorph/parameter/left_out.h"
 #include "anamorph/plan/block_emitter.h"
 #include "anamorph/plan/box_bounds.h"
 #include "anamorph/plan/cost_model.h"
@@ -105,7 +106,7 @@ class Subdivider {
     /// Settles a box that lies on one branch.
     void settle_inside(const Box& box, Place& place, const Known* known = nullptr) {
         if (cover_by_edges(box) == Cover::outside) return m_emitter.outside(box);
-        if (m_scheme == Scheme::residual) return settle_residual(box, place);
+        if (!kIsSmall && m_scheme == Scheme::residual) return settle_residual(box, place);
         if (m_scheme == Scheme::blocks) return settle_blocks(box, place, known);
         if (m_costs.fallback().kind != Fallback::unknown || pixels_of(box) < kLeastInFloat)
             return settle_fastest(box, place, known);
