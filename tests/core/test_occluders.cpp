@@ -278,6 +278,86 @@ TEST(Occluders, RandomTrianglesBeforeAWall) {
     }
 }
 
+TEST(Occluders, WhatMayHidePointsIsFoundForThemTogether) {
+    std::mt19937 random(12);
+    const auto number = [&](double most) {
+        return std::uniform_real_distribution<double>(-most, most)(random);
+    };
+    Triangles before;
+    for (int i = 0; i < 600; ++i) {
+        const glm::dvec3 at(number(2), number(2), number(2));
+        Triangle t;
+        for (glm::dvec3& corner : t) corner = at + glm::dvec3(number(.3), number(.3), number(.3));
+        before.push_back(t);
+    }
+    const glm::dvec3 centre(.1, -.2, .3);
+    Triangles moved = before;
+    for (Triangle& t : moved)
+        for (glm::dvec3& corner : t) corner -= centre;
+    const Occluders occluders(corners_of(before), centre);
+    std::size_t found_in_all = 0, hidden = 0;
+    constexpr int kRows = 800;
+    for (int row = 0; row < kRows; ++row) {
+        const glm::dvec3 first(number(3), number(3), number(3));
+        glm::dvec3 step(number(.02), number(.02), number(.02));
+        // Along axes, and all at one place, too.
+        for (int d = 0; d < 3; ++d)
+            if (row >> d & 1) step[d] = 0;
+        std::vector<glm::dvec3> points;
+        for (int i = 0; i <= row % 16; ++i) points.push_back(first + step * double(i));
+        std::vector<std::int32_t> found{-1};
+        occluders.find_before(points, found);
+        found_in_all += found.size();
+        for (const glm::dvec3& p : points) {
+            const bool expected = is_hidden(p - centre, moved);
+            EXPECT_EQ(occluders.hides(p), expected) << row;
+            EXPECT_EQ(occluders.hides(p, found), expected) << row;
+            hidden += expected ? 1 : 0;
+        }
+    }
+    EXPECT_GT(hidden, 1200U);
+    EXPECT_LT(found_in_all, kRows * before.size() / 20);
+    // In planes of axes, where a row has no width that way.
+    const Occluders wall(corners_of(square(-1, 0.5)), {});
+    for (const double x : {-.9, 0.0, .9}) {
+        const std::vector<glm::dvec3> points{{x, 0, -2}, {x, 0, -3}};
+        std::vector<std::int32_t> found;
+        wall.find_before(points, found);
+        EXPECT_EQ(wall.hides(points[0], found), std::fabs(x) < 1);
+        EXPECT_EQ(wall.hides(points[1], found), true);
+        EXPECT_EQ(wall.hides({x, 0, -2}), std::fabs(x) < 1);
+    }
+}
+
+TEST(Occluders, TheFarSideOfABallIsNotCutAlongItsNearSide) {
+    const Triangles scene = ball({0.3, 0.2, -3}, 1, 16);
+    ProjectionOptions options;
+    options.smallest = 1e-6;
+    const Painted painted =
+        paint(Chart(Projection::equirectangular, 4096, 2048), scene, scene, 0.125, options);
+    // Triangles behind are hidden in one piece, but about the limb.
+    EXPECT_GT(painted.counts.hidden, static_cast<std::int64_t>(scene.size() / 3));
+    EXPECT_LT(painted.counts.hidden, static_cast<std::int64_t>(5 * scene.size()));
+}
+
+TEST(Occluders, ManyNarrowShadowsMakeAWideOne) {
+    // Bars of .004 texels, side by side, of which each alone is neglected.
+    const auto bars_of = [](int count) {
+        Triangles bars;
+        const double width = 0.004 / 1000 / 2;
+        for (int i = 0; i < count; ++i) {
+            const double x = i * width, y = 0.4;
+            bars.push_back({glm::dvec3(x, -y, -.5), {x + width, -y, -.5}, {x + width, y, -.5}});
+            bars.push_back({glm::dvec3(x, -y, -.5), {x + width, y, -.5}, {x, y, -.5}});
+        }
+        return corners_of(bars);
+    };
+    const Triangle wall{glm::dvec3(-.1, -.1, -1), {.1, -.1, -1}, {0, .1, -1}};
+    const ShadowScale scale{1000, 0.01, 0x1p-40};
+    EXPECT_EQ(Occluders(bars_of(1), {}).cover(wall, scale).share, ShadowCover::lit);
+    EXPECT_EQ(Occluders(bars_of(80), {}).cover(wall, scale).share, ShadowCover::both);
+}
+
 TEST(Occluders, WhatTouchesIsPaintedUpToTheContact) {
     // A post that stands on a floor, and the wall that it leans on.
     const Chart chart(Projection::equirectangular, 1024, 512);

@@ -121,12 +121,20 @@ double bound_of(const Point<IntervalJet>& p) {
     const Bend x = bend_of(p.x), y = bend_of(p.y);
     // A vector is no longer than its parts in directions that are 22.5 degrees apart say.
     constexpr int kDirections = 8;
+    static const auto directions = [] {
+        std::array<glm::dvec2, kDirections> all;
+        for (int i = 0; i < kDirections; ++i) {
+            const double angle = std::numbers::pi * i / kDirections;
+            all[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
+        }
+        return all;
+    }();
+    static const double shortest = std::cos(std::numbers::pi / (2 * kDirections));
     double most = 0;
-    for (int i = 0; i < kDirections; ++i) {
-        const double angle = std::numbers::pi * i / kDirections, c = std::cos(angle), s = std::sin(angle);
-        most = std::max(most, most_within(c * x.e + s * y.e, c * x.f + s * y.f, c * x.g + s * y.g));
-    }
-    const double sum = most / std::cos(std::numbers::pi / (2 * kDirections)) + std::hypot(x.off, y.off);
+    for (const glm::dvec2& d : directions)
+        most =
+            std::max(most, most_within(d.x * x.e + d.y * y.e, d.x * x.f + d.y * y.f, d.x * x.g + d.y * y.g));
+    const double sum = most / shortest + std::hypot(x.off, y.off);
     return sum * kHair;
 }
 
@@ -136,8 +144,12 @@ bool to_common_scale(std::array<glm::dvec3, 3>& rays) {
     for (const glm::dvec3& r : rays) most = std::max({most, std::fabs(r.x), std::fabs(r.y), std::fabs(r.z)});
     if (!(most > 0 && most < HUGE_VAL)) return false;
     const int exponent = -std::ilogb(most);
+    // A product with a power of two is quicker, where there is one.
+    const bool is_plain = std::abs(exponent) < 1022;
+    const double power = is_plain ? std::ldexp(1.0, exponent) : 0;
+    const auto scaled = [&](double v) { return is_plain ? v * power : std::ldexp(v, exponent); };
     for (glm::dvec3& r : rays) {
-        r = {std::ldexp(r.x, exponent), std::ldexp(r.y, exponent), std::ldexp(r.z, exponent)};
+        r = {scaled(r.x), scaled(r.y), scaled(r.z)};
         if (!(glm::length(r) > 0)) return false;
     }
     return true;
@@ -219,18 +231,14 @@ std::vector<std::size_t> EdgeRule::faces_at(const glm::dvec3& ray) const {
     return faces;
 }
 
-std::vector<Branch> EdgeRule::branches(const glm::dvec3& a, const glm::dvec3& b) const {
+std::vector<Branch> EdgeRule::branches_of_faces(const glm::dvec3& middle) const {
     const Chart& chart = m_projector.panorama();
-    const glm::dvec3 middle = 0.5 * (a + b);
     std::vector<Branch> found;
-    if (chart.pieces().size() == 1)
-        found.push_back(branch_between({a, b, b}, middle));
-    else
-        for (const std::size_t face : faces_at(middle)) {
-            const int piece = static_cast<int>(face);
-            found.push_back(piece == chart.piece_of(ray_of(middle)) ? chart.branch_around(ray_of(middle))
-                                                                    : chart.branch(piece));
-        }
+    for (const std::size_t face : faces_at(middle)) {
+        const int piece = static_cast<int>(face);
+        found.push_back(piece == chart.piece_of(ray_of(middle)) ? chart.branch_around(ray_of(middle))
+                                                                : chart.branch(piece));
+    }
     return found;
 }
 
@@ -253,7 +261,7 @@ Branch EdgeRule::branch_between(const std::array<glm::dvec3, 3>& rays, const glm
     return chart.branch_around(Ray<double>{half.x, 0, half.y});
 }
 
-EdgeFinding EdgeRule::judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches,
+EdgeFinding EdgeRule::judge_rays(std::array<glm::dvec3, 3> rays, std::span<const Branch> branches,
                                  double share, double wider) const {
     const Chart& chart = m_projector.panorama();
     if (!to_common_scale(rays)) return {EdgeVerdict::split};
@@ -279,13 +287,45 @@ EdgeFinding EdgeRule::judge_rays(std::array<glm::dvec3, 3> rays, const std::vect
     return {EdgeVerdict::split};
 }
 
+bool EdgeRule::is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const {
+    const Chart& chart = m_projector.panorama();
+    const double most = kShare * m_tol, squared = glm::dot(a, a) * glm::dot(b, b);
+    const glm::dvec3 across = glm::cross(a, b);
+    // A panorama bends about as a circle does: an edge of half the error that may be is not worth looking at. One that is tiny is
+    // shorter.
+    const double bend = glm::dot(across, across) / squared * chart.pixels_per_radian() / 8;
+    if (!(bend > 0.5 * most) || !(squared > 0x1p-800 && squared < 0x1p800)) return false;
+    const glm::dvec3 middle = 0.5 * (a + b);
+    const int piece = chart.piece_of(ray_of(middle));
+    Point<double> at[3];
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 r = i == 0 ? a : i == 1 ? b : middle;
+        const Ray<double> local = transform(glm::transpose(chart.branch(piece).axes), ray_of(r));
+        if (!chart.pieces_see_all() && !(chart.sees(local, piece) > 0)) return false;
+        at[i] = chart.local_point(local, chart.branch(piece));
+    }
+    const double off = std::hypot(at[2].x - 0.5 * (at[0].x + at[1].x), at[2].y - 0.5 * (at[0].y + at[1].y));
+    const bool is_within =
+        at[2].x > 1 && at[2].x < chart.width() - 1 && at[2].y > 1 && at[2].y < chart.height() - 1;
+    // Ends on either side of where azimuths begin are off by half of a turn.
+    return is_within && off > 1.001 * most && off < 0.1 * chart.width();
+}
+
 EdgeFinding EdgeRule::judge(const glm::dvec3& a, const glm::dvec3& b) const {
     const glm::dvec3 from = m_projector.ray(a), to = m_projector.ray(b);
     const double edge = glm::length(to - from);
     if (!(edge < HUGE_VAL)) return {};
     const double at = crossing(from, to);
     if (at > 0) return edge > m_smallest ? EdgeFinding{EdgeVerdict::cut, 0, at} : EdgeFinding{};
-    const EdgeFinding found = judge_rays({from, to, from}, branches(from, to), kShare, kWider);
+    EdgeFinding found{EdgeVerdict::split};
+    if (!is_off_in_middle(from, to)) {
+        const glm::dvec3 middle = 0.5 * (from + to);
+        if (m_projector.panorama().pieces().size() > 1)
+            found = judge_rays({from, to, from}, branches_of_faces(middle), kShare, kWider);
+        else
+            found = judge_rays({from, to, from}, std::array{branch_between({from, to, to}, middle)}, kShare,
+                               kWider);
+    }
     if (found.verdict == EdgeVerdict::split && !(edge > m_smallest)) return {};
     return found;
 }
@@ -293,7 +333,7 @@ EdgeFinding EdgeRule::judge(const glm::dvec3& a, const glm::dvec3& b) const {
 EdgeFinding EdgeRule::judge(const std::array<glm::dvec3, 3>& corners) const {
     std::array<glm::dvec3, 3> rays;
     for (std::size_t i = 0; i < 3; ++i) rays[i] = m_projector.ray(corners[i]);
-    return judge_rays(rays, {branch_between(rays, middle_of(rays))}, 1, 0);
+    return judge_rays(rays, std::array{branch_between(rays, middle_of(rays))}, 1, 0);
 }
 
 std::optional<glm::dvec3> EdgeRule::axis_in(const std::array<glm::dvec3, 3>& corners) const {

@@ -26,6 +26,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "anamorph/projector/projector.h"
@@ -81,10 +82,13 @@ class EdgeRule {
     /// The faces that a ray is on: several on their borders.
     std::vector<std::size_t> faces_at(const glm::dvec3& ray) const;
     /// The branches on which an edge may be read: one for each face that its middle is on.
-    std::vector<Branch> branches(const glm::dvec3& a, const glm::dvec3& b) const;
+    std::vector<Branch> branches_of_faces(const glm::dvec3& middle) const;
     /// The branch about the middle of rays, or half way between their azimuths where those are counted.
     Branch branch_between(const std::array<glm::dvec3, 3>& rays, const glm::dvec3& middle) const;
-    EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches, double share,
+    /// Is the texel of an edge's middle farther from what interpolation gives than an edge may be off? It is then split, as it would
+    /// be by its bound, which is no less. False where that is not clear.
+    bool is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const;
+    EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, std::span<const Branch> branches, double share,
                            double wider) const;
 
     /// The share of the tolerance that edges may take.

@@ -123,77 +123,147 @@ void Occluders::build(std::vector<Rays>& triangles, std::size_t begin, std::size
     build(triangles, half, end);
 }
 
-bool Occluders::meets(const Node& node, const std::vector<HalfSpace>& region) {
-    for (const HalfSpace& half : region) {
+/// A convex region about the centre: t r, with t from 0 to 1 and r in a box about some rays, where half spaces hold.
+class Occluders::Region {
+  public:
+    /// About the rays of points from a centre.
+    explicit Region(std::span<const glm::dvec3> points, const glm::dvec3& centre = glm::dvec3(0.0)) {
+        glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+        double size = 0;
+        for (const glm::dvec3& point : points) {
+            const glm::dvec3 r = point - centre;
+            low = glm::min(low, r);
+            high = glm::max(high, r);
+            size = std::max(size, glm::length(r));
+        }
+        // Where t r is in a node's box, t low <= node.high and t (-high) <= -node.low.
+        for (int d = 0; d < 3; ++d) {
+            bound(low[d] - kHair * size, 3 + d, 1);
+            bound(-(high[d] + kHair * size), d, -1);
+        }
+    }
+    void add(const HalfSpace& half) { m_halves[m_half_count++] = half; }
+
+    /// False only where no point of a node's box is in the region, but for rounding.
+    bool meets(const Node& node) const {
+        const double box[] = {node.low.x, node.low.y, node.low.z, node.high.x, node.high.y, node.high.z};
+        double from = 0, to = 1;
+        for (std::size_t i = 0; i < m_lower_count; ++i)
+            from = std::max(from, box[m_lower[i].number] * m_lower[i].factor);
+        for (std::size_t i = 0; i < m_upper_count; ++i)
+            to = std::min(to, box[m_upper[i].number] * m_upper[i].factor);
+        if (!(from <= to)) return false;
+        for (std::size_t i = 0; i < m_half_count; ++i)
+            if (!reaches(m_halves[i], node)) return false;
+        return true;
+    }
+
+  private:
+    /// Shares of lengths that are taken for rounding: that of a few operations, 2^-50, is less.
+    static constexpr double kHair = 1e-12;
+
+    /// t is bounded by one of the six numbers of a box, times a factor.
+    struct Bound {
+        int number;
+        double factor;
+    };
+    /// Takes t k <= side * box[number] as a bound. One that says nothing for 0 times infinity, a NaN, leaves t as it was.
+    void bound(double k, int number, double side) {
+        if (k > 0)
+            m_upper[m_upper_count++] = {number, side / k};
+        else
+            m_lower[m_lower_count++] = {number, k < 0 ? side / k : -side * HUGE_VAL};
+    }
+    static bool reaches(const HalfSpace& half, const Node& node) {
         double most = half.offset, size = std::fabs(half.offset);
         for (int d = 0; d < 3; ++d) {
             const double low = half.normal[d] * node.low[d], high = half.normal[d] * node.high[d];
             most += std::max(low, high);
             size += std::max(std::fabs(low), std::fabs(high));
         }
-        if (most < -1e-12 * size) return false;
+        return !(most < -kHair * size);
     }
-    return true;
-}
 
-void Occluders::for_each_in(const std::vector<HalfSpace>& region,
-                            const std::function<bool(const Occluder&)>& body) const {
-    std::vector<std::int32_t> open;
-    if (!m_nodes.empty()) open.push_back(0);
-    while (!open.empty()) {
-        const std::int32_t at = open.back();
-        open.pop_back();
+    std::array<Bound, 6> m_lower{}, m_upper{};
+    std::array<HalfSpace, 5> m_halves{};
+    std::size_t m_lower_count = 0, m_upper_count = 0, m_half_count = 0;
+};
+
+template <class Body>
+void Occluders::for_each_in(const Region& region, const Body& body) const {
+    // Each level halves what is left, so that at most as many halves wait as there are bits in their number.
+    std::array<std::int32_t, 32> open;
+    std::size_t waiting = 0;
+    if (!m_nodes.empty()) open[waiting++] = 0;
+    while (waiting > 0) {
+        const std::int32_t at = open[--waiting];
         const Node& node = m_nodes[static_cast<std::size_t>(at)];
-        if (!meets(node, region)) continue;
+        if (!region.meets(node)) continue;
         if (node.right) {
-            open.push_back(node.right);
-            open.push_back(at + 1);
+            open[waiting++] = node.right;
+            open[waiting++] = at + 1;
             continue;
         }
         for (std::int32_t i = node.begin; i < node.end; ++i)
-            if (!body(m_occluders[static_cast<std::size_t>(i)])) return;
+            if (!body(i)) return;
     }
 }
 
 /// The tetrahedron from the centre to a triangle.
-std::vector<Occluders::HalfSpace> Occluders::region_before(const Rays& r) {
+Occluders::Region Occluders::region_before(const Rays& r) {
     const double side = triple(r) >= 0 ? 1 : -1;
-    std::vector<HalfSpace> region;
-    for (std::size_t k = 0; k < 3; ++k) region.push_back({glm::cross(r[k], r[(k + 1) % 3]) * side, 0});
+    Region region(r);
+    for (std::size_t k = 0; k < 3; ++k) region.add({glm::cross(r[k], r[(k + 1) % 3]) * side, 0});
     const glm::dvec3 n = glm::cross(r[1] - r[0], r[2] - r[0]) * side;
-    region.push_back({-n, glm::dot(n, r[0])});
+    region.add({-n, glm::dot(n, r[0])});
     return region;
 }
 
 /// The triangle from the centre to an edge.
-std::vector<Occluders::HalfSpace> Occluders::region_before(const glm::dvec3& a, const glm::dvec3& b) {
+Occluders::Region Occluders::region_before(const glm::dvec3& a, const glm::dvec3& b) {
     const glm::dvec3 n = glm::cross(a, b), along = glm::cross(n, b - a);
     const double offset = glm::dot(along, a);
     const double side = offset > 0 ? -1 : 1;
-    return {{n, 0}, {-n, 0}, {glm::cross(n, a), 0}, {glm::cross(b, n), 0}, {along * side, -offset * side}};
+    Region region(std::array{a, b});
+    for (const HalfSpace& half : {HalfSpace{n, 0}, HalfSpace{-n, 0}, HalfSpace{glm::cross(n, a), 0},
+                                  HalfSpace{glm::cross(b, n), 0}, HalfSpace{along * side, -offset * side}})
+        region.add(half);
+    return region;
+}
+
+bool Occluders::Occluder::hides(const glm::dvec3& ray) const {
+    return value(0, ray) >= 0 && value(1, ray) >= 0 && value(2, ray) >= 0 && value(3, ray) > 0;
 }
 
 bool Occluders::hides(const glm::dvec3& point) const {
     const glm::dvec3 r = point - m_centre;
     bool hidden = false;
-    // The line between two pairs of planes, up to the point.
-    const glm::dvec3 size = glm::abs(r);
-    const glm::dvec3 other = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
-                             : size.y <= size.z                   ? glm::dvec3(0, 1, 0)
-                                                                  : glm::dvec3(0, 0, 1);
-    const glm::dvec3 e = glm::cross(r, other), f = glm::cross(r, e);
-    const std::vector<HalfSpace> on_way{{e, 0}, {-e, 0}, {f, 0}, {-f, 0}, {r, 0}, {-r, glm::dot(r, r)}};
-    for_each_in(on_way, [&](const Occluder& o) {
-        hidden = o.value(0, r) >= 0 && o.value(1, r) >= 0 && o.value(2, r) >= 0 && o.value(3, r) > 0;
+    for_each_in(Region({&point, 1}, m_centre), [&](std::int32_t i) {
+        hidden = m_occluders[static_cast<std::size_t>(i)].hides(r);
         return !hidden;
     });
     return hidden;
 }
 
+void Occluders::find_before(std::span<const glm::dvec3> points, std::vector<std::int32_t>& found) const {
+    found.clear();
+    for_each_in(Region(points, m_centre), [&](std::int32_t i) {
+        found.push_back(i);
+        return true;
+    });
+}
+
+bool Occluders::hides(const glm::dvec3& point, std::span<const std::int32_t> triangles) const {
+    const glm::dvec3 r = point - m_centre;
+    return std::any_of(triangles.begin(), triangles.end(),
+                       [&](std::int32_t i) { return m_occluders[static_cast<std::size_t>(i)].hides(r); });
+}
+
 bool Occluders::may_hide(const Rays& triangle) const {
     const Rays r{triangle[0] - m_centre, triangle[1] - m_centre, triangle[2] - m_centre};
     bool found = false;
-    for_each_in(region_before(r), [&](const Occluder& o) {
+    for_each_in(region_before(r), [&](std::int32_t i) {
+        const Occluder& o = m_occluders[static_cast<std::size_t>(i)];
         found = false;
         for (const glm::dvec3& corner : r) found = found || o.value(3, corner) > 0;
         return !found;
@@ -210,7 +280,8 @@ double Occluders::border(const glm::dvec3& a, const glm::dvec3& b, double hair,
     // Where a corner of a shadow just reaches the edge, the border goes on within the triangles beside it.
     std::vector<double> touched;
     bool all_dark = false;
-    for_each_in(region_before(r, s), [&](const Occluder& o) {
+    for_each_in(region_before(r, s), [&](std::int32_t i) {
+        const Occluder& o = m_occluders[static_cast<std::size_t>(i)];
         Stretch stretch{0, 1};
         bool on_side = false;
         for (const std::size_t k : {3, 0, 1, 2}) {
@@ -285,9 +356,13 @@ class ShadowParts {
     ShadowCover cover() const {
         if (m_dark.empty() && !m_all_dark) return {ShadowCover::lit};
         Part light;
-        for (const Part& part : m_lit) light.insert(light.end(), part.begin(), part.end());
-        const bool dark_is_wide = m_all_dark || is_wide(m_dark);
-        if (is_wide(light)) return dark_is_wide ? corner() : ShadowCover{ShadowCover::lit};
+        double light_widths = 0;
+        for (const Part& part : m_lit) {
+            light.insert(light.end(), part.begin(), part.end());
+            light_widths += width(part);
+        }
+        const bool dark_is_wide = m_all_dark || are_wide(m_dark, m_dark_widths);
+        if (are_wide(light, light_widths)) return dark_is_wide ? corner() : ShadowCover{ShadowCover::lit};
         // What has but strips of both is what most of it is.
         return {!dark_is_wide && is_mostly_lit() ? ShadowCover::lit : ShadowCover::hidden};
     }
@@ -322,8 +397,8 @@ class ShadowParts {
         for (const Part& part : m_lit) lit += area(part);
         return 2 * lit > area(kWhole);
     }
-    /// Are points farther from the line through the two that are farthest apart?
-    bool is_wide(const Part& part) const {
+    /// The width of a strip along the two points that are farthest apart, in which all points lie.
+    double width(const Part& part) const {
         double longest = 0;
         glm::dvec2 from(0.0), along(0.0);
         for (std::size_t i = 0; i < part.size(); ++i)
@@ -340,7 +415,14 @@ class ShadowParts {
             low = std::min(low, along.x * d.y - along.y * d.x);
             high = std::max(high, along.x * d.y - along.y * d.x);
         }
-        return high - low > m_scale.thin;
+        return high - low;
+    }
+    bool is_wide(const Part& part) const { return width(part) > m_scale.thin; }
+    /// May a disc wider than what is neglected lie in parts, of which all points are given, and the sum of their widths? It does not
+    /// where one strip holds them, nor where strips do that are no wider together: those that cover a disc are at least as wide as
+    /// it (Bang 1951). Between triangles that share sides rounding leaves many parts, of hardly any width.
+    bool are_wide(const Part& points, double widths) const {
+        return widths > m_scale.thin && is_wide(points);
     }
 
     void subtract(const Part& part, const std::array<glm::dvec3, 4>& at, std::vector<Part>& lit) {
@@ -357,6 +439,7 @@ class ShadowParts {
             return;
         }
         m_dark.insert(m_dark.end(), inside.begin(), inside.end());
+        m_dark_widths += width(inside);
         lit.insert(lit.end(), beside.begin(), beside.end());
     }
 
@@ -412,6 +495,7 @@ class ShadowParts {
     std::vector<Part> m_lit;
     std::vector<std::array<glm::dvec3, 4>> m_takers;
     Part m_dark;
+    double m_dark_widths = 0;
     bool m_all_dark = false;
 };
 
@@ -421,7 +505,8 @@ ShadowCover Occluders::cover(const Rays& triangle, const ShadowScale& scale) con
     if (parts.is_narrow())
         return {hides((triangle[0] + triangle[1] + triangle[2]) / 3.0) ? ShadowCover::hidden
                                                                        : ShadowCover::lit};
-    for_each_in(region_before(r), [&](const Occluder& o) { return parts.take(o); });
+    for_each_in(region_before(r),
+                [&](std::int32_t i) { return parts.take(m_occluders[static_cast<std::size_t>(i)]); });
     return parts.cover();
 }
 

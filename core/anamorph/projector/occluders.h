@@ -10,8 +10,8 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 namespace anamorph {
@@ -52,6 +52,11 @@ class Occluders {
 
     /// Is a point hidden?
     bool hides(const glm::dvec3& point) const;
+    /// Finds the triangles that may hide some points, by their positions in occluders(): all that hide one, and the fewer others the
+    /// closer together the points are.
+    void find_before(std::span<const glm::dvec3> points, std::vector<std::int32_t>& found) const;
+    /// Is a point hidden by one of these triangles? Where they are what find_before() finds, by any at all.
+    bool hides(const glm::dvec3& point, std::span<const std::int32_t> triangles) const;
     /// May something hide a part of a triangle? False if nothing does.
     bool may_hide(const std::array<glm::dvec3, 3>& triangle) const;
     /// Finds the first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
@@ -68,6 +73,8 @@ class Occluders {
         /// The value of normals[k] . ray, less `depth` for k = 3: a point is hidden where all four are not negative (that of
         /// k = 3, positive).
         double value(std::size_t k, const glm::dvec3& ray) const;
+        /// Does it hide the point of a ray?
+        bool hides(const glm::dvec3& ray) const;
     };
     /// A box around some of the triangles, relative to the centre.
     struct Node {
@@ -89,13 +96,14 @@ class Occluders {
         double offset;
     };
 
+    class Region;
+
     void build(std::vector<std::array<glm::dvec3, 3>>& triangles, std::size_t begin, std::size_t end);
-    static bool meets(const Node& node, const std::vector<HalfSpace>& region);
-    /// Calls `body` with the occluders that may be in a convex region, until `body` returns false.
-    void for_each_in(const std::vector<HalfSpace>& region,
-                     const std::function<bool(const Occluder&)>& body) const;
-    static std::vector<HalfSpace> region_before(const std::array<glm::dvec3, 3>& rays);
-    static std::vector<HalfSpace> region_before(const glm::dvec3& a, const glm::dvec3& b);
+    /// Calls `body` with the positions of the occluders that may be in a region, until `body` returns false.
+    template <class Body>
+    void for_each_in(const Region& region, const Body& body) const;
+    static Region region_before(const std::array<glm::dvec3, 3>& rays);
+    static Region region_before(const glm::dvec3& a, const glm::dvec3& b);
 
     friend class ShadowParts;
 

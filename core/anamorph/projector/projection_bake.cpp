@@ -2,6 +2,7 @@
 #include "anamorph/projector/projection_bake.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -57,7 +58,7 @@ struct FlatTriangle {
 
 /// Bilinear, within the face that a texel lies on; across the seam of a closed panorama.
 void read_pixel(const Chart& chart, const float* pixels, int channels, const Point<double>& texel,
-                const glm::dvec3& ray, double share, std::vector<double>& sum) {
+                const glm::dvec3& ray, double share, double* sum) {
     const Box& box =
         chart.pieces()[static_cast<std::size_t>(chart.piece_of(Ray<double>{ray.x, ray.y, ray.z}))].box;
     const bool faces = chart.pieces().size() > 1 && !faces_of(chart.projection()).joined;
@@ -77,9 +78,8 @@ void read_pixel(const Chart& chart, const float* pixels, int channels, const Poi
         return double{pixels[(j * chart.width() + i) * channels + c]};
     };
     for (int c = 0; c < channels; ++c)
-        sum[static_cast<std::size_t>(c)] +=
-            share * ((1 - t) * ((1 - s) * at(left, top, c) + s * at(right, top, c)) +
-                     t * ((1 - s) * at(left, bottom, c) + s * at(right, bottom, c)));
+        sum[c] += share * ((1 - t) * ((1 - s) * at(left, top, c) + s * at(right, top, c)) +
+                           t * ((1 - s) * at(left, bottom, c) + s * at(right, bottom, c)));
 }
 
 /// The baking of one texture.
@@ -115,10 +115,12 @@ class Baking {
     }
 
     void row(std::int64_t j) {
-        std::vector<char> taken(static_cast<std::size_t>(m_options.size.width), 0);
+        RowState state{j, std::vector<char>(static_cast<std::size_t>(m_options.size.width), 0)};
         for (const bool beyond : {false, true})
             for (const std::size_t triangle : m_rows[static_cast<std::size_t>(j)])
-                span(triangle, j, beyond, taken);
+                span(triangle, beyond, state);
+        m_painted += state.painted;
+        m_unseen += state.unseen;
     }
 
     BakedTexture take() {
@@ -134,51 +136,88 @@ class Baking {
                row >= first && (row - first) % static_cast<std::size_t>(m_options.row_step) == 0;
     }
 
+    /// Neighbouring texels of a row, of one triangle.
+    struct Texels {
+        static constexpr std::size_t kMost = 16;
+        std::size_t count = 0;
+        std::array<std::int64_t, kMost> columns = {};
+        std::array<glm::dvec3, kMost> points = {};
+    };
+    /// A row while it is baked.
+    struct RowState {
+        std::int64_t row;
+        std::vector<char> taken;  ///< the columns that a triangle has
+        std::int64_t painted = 0, unseen = 0;
+        Texels texels = {};
+        // Memory that is used again.
+        std::vector<double> sums = {};
+        std::vector<std::int32_t> before = {};
+    };
+
     /// The texels of a row that a triangle has, or those that it has beyond its border.
-    void span(std::size_t triangle, std::int64_t j, bool beyond, std::vector<char>& taken) {
+    void span(std::size_t triangle, bool beyond, RowState& state) {
         const FlatTriangle& flat = m_flat[triangle];
         const auto& c = flat.corners;
         const double low = std::min({c[0].x, c[1].x, c[2].x}), high = std::max({c[0].x, c[1].x, c[2].x});
         const double width = m_options.size.width;
         const auto begin = static_cast<std::int64_t>(std::clamp(low - m_options.margin - 1, 0.0, width));
         const auto end = static_cast<std::int64_t>(std::clamp(high + m_options.margin + 1, 0.0, width));
+        Texels& texels = state.texels;
+        const auto& q = m_mesh[triangle].points;
         for (std::int64_t i = begin; i < end; ++i) {
-            char& mine = taken[static_cast<std::size_t>(i)];
+            char& mine = state.taken[static_cast<std::size_t>(i)];
             if (mine) continue;
-            const glm::dvec2 p(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+            const glm::dvec2 p(static_cast<double>(i) + 0.5, static_cast<double>(state.row) + 0.5);
             const glm::dvec3 weights = flat.weights(p);
             const bool inside = std::min({weights.x, weights.y, weights.z}) >= 0;
             if (!inside && !(beyond && flat.distance(p) <= m_options.margin)) continue;
             mine = 1;
-            texel(m_mesh[triangle], weights, i, j);
+            texels.columns[texels.count] = i;
+            texels.points[texels.count++] = q[0] * weights.x + q[1] * weights.y + q[2] * weights.z;
+            if (texels.count == Texels::kMost) paint(m_mesh[triangle], state);
         }
+        if (texels.count > 0) paint(m_mesh[triangle], state);
     }
 
-    void texel(const BakedTriangle& triangle, const glm::dvec3& weights, std::int64_t i, std::int64_t j) {
+    /// Paints the texels that have been gathered of a triangle.
+    void paint(const BakedTriangle& triangle, RowState& state) {
+        Texels& texels = state.texels;
         const auto& q = triangle.points;
-        const glm::dvec3 point = q[0] * weights.x + q[1] * weights.y + q[2] * weights.z;
         const glm::dvec3 normal = glm::cross(q[1] - q[0], q[2] - q[0]);
-        std::vector<double> sum(static_cast<std::size_t>(m_options.channels), 0.0);
-        double all = 0;
+        const std::size_t channels = static_cast<std::size_t>(m_options.channels);
+        std::vector<double>& sums = state.sums;
+        sums.assign(texels.count * channels, 0.0);
+        std::array<double, Texels::kMost> all = {};
         for (const ThrownPicture& picture : m_pictures) {
-            Point<double> at{};
-            const double share = share_of(picture.projector, point, normal, m_options.fade, at);
-            if (!(share > 0) || (picture.occluders && picture.occluders->hides(point))) continue;
-            all += share;
-            read_pixel(picture.projector.panorama(), picture.pixels, m_options.channels, at,
-                       picture.projector.ray(point), share, sum);
+            bool searched = !picture.occluders;
+            for (std::size_t k = 0; k < texels.count; ++k) {
+                const glm::dvec3& point = texels.points[k];
+                Point<double> at{};
+                const double share = share_of(picture.projector, point, normal, m_options.fade, at);
+                if (!(share > 0)) continue;
+                if (!searched) {
+                    picture.occluders->find_before({texels.points.data(), texels.count}, state.before);
+                    searched = true;
+                }
+                if (picture.occluders && picture.occluders->hides(point, state.before)) continue;
+                all[k] += share;
+                read_pixel(picture.projector.panorama(), picture.pixels, m_options.channels, at,
+                           picture.projector.ray(point), share, sums.data() + k * channels);
+            }
         }
-        if (!(all > 0)) {
-            ++m_unseen;
-            return;
+        for (std::size_t k = 0; k < texels.count; ++k) {
+            if (!(all[k] > 0)) {
+                ++state.unseen;
+                continue;
+            }
+            ++state.painted;
+            float* to = &m_texture.pixels[static_cast<std::size_t>(
+                ((state.row - m_begin) * m_options.size.width + texels.columns[k]) * m_stride)];
+            for (std::size_t c = 0; c < channels; ++c)
+                to[c] = static_cast<float>(sums[k * channels + c] / all[k]);
+            to[channels] = 1;
         }
-        ++m_painted;
-        float* to =
-            &m_texture
-                 .pixels[static_cast<std::size_t>(((j - m_begin) * m_options.size.width + i) * m_stride)];
-        for (int c = 0; c < m_options.channels; ++c)
-            to[c] = static_cast<float>(sum[static_cast<std::size_t>(c)] / all);
-        to[m_options.channels] = 1;
+        texels.count = 0;
     }
 
     const std::vector<BakedTriangle>& m_mesh;
