@@ -397,6 +397,34 @@ TEST(VtkInbetween, TheInputThatDiffersIsNamedAndWhere) {
                 HasSubstr("input 1 is a vtkUnstructuredGrid, not a vtkPolyData"));
 }
 
+TEST(VtkInbetween, ADifferenceIsFoundAnywhereInALargeSurface) {
+    const Shape base = sphere(120), copy = Shape::New(), narrow = Shape::New();
+    copy->DeepCopy(base);
+    narrow->DeepCopy(base);
+    narrow->GetPolys()->ConvertTo32BitStorage();
+    EXPECT_EQ(error_of({base, copy, narrow}), "");
+    const vtkIdType cells = base->GetNumberOfPolys();
+    // 3 numbers of 8 bytes a cell: in the first piece that is compared, on both sides of a border of pieces, and in the last.
+    for (const vtkIdType cell : {vtkIdType{0}, vtkIdType{2730}, vtkIdType{2731}, cells / 2, cells - 1}) {
+        const Shape other = Shape::New();
+        other->DeepCopy(base);
+        vtkNew<vtkIdList> points;
+        other->GetPolys()->GetCellAtId(cell, points);
+        std::swap(*points->GetPointer(1), *points->GetPointer(2));
+        other->GetPolys()->ReplaceCellAtId(cell, points);
+        EXPECT_THAT(
+            error_of({base, copy, other, narrow}),
+            HasSubstr("input 2 has other points in number " + std::to_string(cell) + " of its polygons"));
+    }
+    // The same points in all, but of other cells.
+    const Shape joined = Shape::New();
+    joined->DeepCopy(base);
+    auto* offsets = joined->GetPolys()->GetOffsetsArray64();
+    offsets->SetValue(cells - 1, offsets->GetValue(cells - 1) + 1);
+    EXPECT_THAT(error_of({base, joined}), HasSubstr("input 1 has other points in number " +
+                                                    std::to_string(cells - 2) + " of its polygons"));
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> unstructured(int type, std::initializer_list<vtkIdType> ids) {
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
     vtkNew<vtkPoints> points;

@@ -2,6 +2,7 @@
 #include "vtkAnamorphInbetween.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -34,6 +35,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVersion.h"
 
@@ -135,6 +137,79 @@ std::string topology_differs(vtkPointSet* base, vtkPointSet* other) {
     if (auto* unstructured = vtkUnstructuredGrid::SafeDownCast(base))
         return unstructured_differs(unstructured, vtkUnstructuredGrid::SafeDownCast(other));
     return any_cells_differ(base, other);
+}
+
+using Arrays = std::vector<vtkDataArray*>;
+
+void append_cells(vtkCellArray* cells, Arrays& to) {
+    if (!cells) return;
+    to.push_back(cells->GetOffsetsArray());
+    to.push_back(cells->GetConnectivityArray());
+}
+
+/// The arrays that, with the number of points, say all of a surface's topology; none where there is more to it.
+Arrays topology_arrays(vtkPointSet* surface) {
+    Arrays arrays;
+    if (auto* poly_data = vtkPolyData::SafeDownCast(surface)) {
+        append_cells(poly_data->GetVerts(), arrays);
+        append_cells(poly_data->GetLines(), arrays);
+        append_cells(poly_data->GetPolys(), arrays);
+        append_cells(poly_data->GetStrips(), arrays);
+    } else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(surface)) {
+        vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+        if (!types || !grid->GetCells()) return {};
+        const unsigned char* type = types->GetPointer(0);
+        if (std::find(type, type + types->GetNumberOfValues(), VTK_POLYHEDRON) !=
+            type + types->GetNumberOfValues())
+            return {};
+        arrays.push_back(types);
+        append_cells(grid->GetCells(), arrays);
+    }
+    return arrays;
+}
+
+std::int64_t bytes_of(vtkDataArray* array) {
+    return std::int64_t{array->GetNumberOfValues()} * array->GetDataTypeSize();
+}
+
+/// May two arrays be compared byte by byte, and be alike?
+bool are_comparable(vtkDataArray* a, vtkDataArray* b) {
+    return a == b || (a->HasStandardMemoryLayout() && b->HasStandardMemoryLayout() &&
+                      a->GetDataType() == b->GetDataType() && bytes_of(a) == bytes_of(b));
+}
+
+/// Which surfaces have the topology of the base for certain: those whose arrays have the same bytes. All are compared
+/// together, a piece of the base with theirs, so that it is read once.
+std::vector<bool> have_same_arrays(const std::vector<vtkSmartPointer<vtkPointSet>>& surfaces,
+                                   const std::vector<bool>& asked, std::size_t base_index) {
+    const Arrays base = topology_arrays(surfaces[base_index]);
+    std::vector<Arrays> arrays(surfaces.size());
+    std::vector<std::atomic<bool>> same(surfaces.size());
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (asked[i]) arrays[i] = topology_arrays(surfaces[i]);
+        same[i] = asked[i] && !base.empty() && arrays[i].size() == base.size() &&
+                  surfaces[i]->GetNumberOfPoints() == surfaces[base_index]->GetNumberOfPoints() &&
+                  std::equal(base.begin(), base.end(), arrays[i].begin(), are_comparable);
+    }
+    constexpr std::int64_t kPiece = 1 << 16;
+    for (std::size_t k = 0; k < base.size(); ++k) {
+        std::vector<std::size_t> others;
+        for (std::size_t i = 0; i < surfaces.size(); ++i)
+            if (same[i] && arrays[i][k] != base[k]) others.push_back(i);
+        if (others.empty()) continue;
+        const std::int64_t bytes = bytes_of(base[k]);
+        const auto at = [](vtkDataArray* array) {
+            return static_cast<const char*>(array->GetVoidPointer(0));
+        };
+        anamorph::smp_for((bytes + kPiece - 1) / kPiece, [&](std::int64_t piece) {
+            const std::int64_t first = piece * kPiece;
+            const auto count = static_cast<std::size_t>(std::min(kPiece, bytes - first));
+            for (const std::size_t i : others)
+                if (same[i] && std::memcmp(at(base[k]) + first, at(arrays[i][k]) + first, count) != 0)
+                    same[i] = false;
+        });
+    }
+    return {same.begin(), same.end()};
 }
 
 // ---- Blending ----
@@ -632,13 +707,17 @@ void vtkAnamorphInbetween::CheckTopology(const std::vector<vtkSmartPointer<vtkPo
                                          const std::string& part, std::set<Pair>& same) const {
     const auto base_index = static_cast<std::size_t>(this->BaseIndex);
     vtkPointSet* base = surfaces[base_index];
+    std::vector<bool> unknown;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const Pair pair(base, base->GetMTime(), surfaces[i], surfaces[i]->GetMTime());
-        if (i != base_index && !this->SameTopology.count(pair)) {
-            const std::string words = topology_differs(base, surfaces[i]);
-            if (!words.empty()) throw Error(named(part, i, words, base_index));
-        }
+        unknown.push_back(i != base_index && !this->SameTopology.count(pair));
         same.insert(pair);
+    }
+    const std::vector<bool> alike = have_same_arrays(surfaces, unknown, base_index);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (!unknown[i] || alike[i]) continue;
+        const std::string words = topology_differs(base, surfaces[i]);
+        if (!words.empty()) throw Error(named(part, i, words, base_index));
     }
 }
 
