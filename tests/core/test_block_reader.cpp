@@ -139,7 +139,7 @@ TEST(BlockReader, RowsMayStandAnyNumberOfBytesApart) {
 
 TEST(BlockReader, RowsMayStandGigabytesApart) {
     constexpr int kWidth = 64, kHeight = 60;
-    constexpr std::ptrdiff_t kStride = std::ptrdiff_t{1} << 27;
+    constexpr std::ptrdiff_t kStride = std::ptrdiff_t{1} << (sizeof(std::ptrdiff_t) == 8 ? 27 : 24);
     // Addresses alone: only the rows' own pages are touched.
     void* const memory = mmap(nullptr, kStride * kHeight, PROT_READ | PROT_WRITE,
                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

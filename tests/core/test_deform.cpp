@@ -407,6 +407,32 @@ TEST(DeformedSurface, GridsAndPointsAgreeToTheBit) {
     }
 }
 
+TEST(DeformedSurface, LargeSumsOnGridsAreThoseOfPoints) {
+    // Sums from below 2^51 resolutions to beyond 2^53, of either sign.
+    const DeformOptions options{1e-7, 1};
+    const std::vector<double> u = even(70), v = even(9);
+    std::vector<glm::dvec2> points;
+    for (const double y : v)
+        for (const double x : u) points.push_back({x, y});
+    for (const double sign : {1.0, -1.0}) {
+        Random random(31);
+        std::vector<Deformation> list;
+        double most = 0;
+        for (int k = 0; k < 40; ++k) {
+            list.push_back(random.deformation(.3, .9));
+            list.back().vector = sign * glm::dvec3(1e15, 1.1e15 - k, 2e13 * k);
+            std::vector<double> grid(3 * points.size()), scattered(grid);
+            deform_grid<double>(list, u, v, options, nullptr, grid.data());
+            DeformedPoints on_points(points, options);
+            on_points.apply(additions(list));
+            on_points.write<double>(nullptr, scattered.data());
+            ASSERT_EQ(grid, scattered) << k;
+            for (const double x : grid) most = std::max(most, std::fabs(x));
+        }
+        EXPECT_GT(most, 0x1p53);
+    }
+}
+
 /// Large surfaces are written past the caches: their bits are those of strips, which are not, wherever the
 /// points lie in memory, and nothing beside them is touched.
 template <class T>

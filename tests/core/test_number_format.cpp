@@ -74,6 +74,7 @@ void expect_nearest(const NumberFormat& format, const std::vector<Stored>& all, 
     }
 }
 
+#ifdef __SIZEOF_INT128__  // processors of 32 bits have none
 /// k of the nearest k / most to a value that is not negative, in whole numbers: value is m 2^-e.
 long exact_normalised(double value, long most) {
     int exponent = 0;
@@ -87,6 +88,8 @@ long exact_normalised(double value, long most) {
     return tie && k % 2 == 1 ? k - 1 : k;
 }
 
+#endif
+
 TEST(NumberFormat, RoundsToTheNearestOfAllItsValues) {
     expect_nearest(kSigned8, fixed_values(8, 7));
     expect_nearest(kSigned16, fixed_values(16, 15));
@@ -97,6 +100,7 @@ TEST(NumberFormat, RoundsToTheNearestOfAllItsValues) {
         expect_nearest(kFloat24, some_float24_values(exponent), 2);
 }
 
+#ifdef __SIZEOF_INT128__
 /// Texels' middles are no doubles: the doubles beside them round to where they lie.
 TEST(NumberFormat, NormalisedRoundAsWholeNumbersSayBesideEveryTie) {
     for (const int bits : {1, 2, 5, 8, 10, 12, 16}) {
@@ -123,6 +127,7 @@ TEST(NumberFormat, NormalisedRoundAsWholeNumbersSayBesideEveryTie) {
         }
     }
 }
+#endif
 
 TEST(NumberFormat, TwosComplementHasOneZero) {
     for (const NumberFormat& f : {kSigned8, kSigned16, kFixed16, kFixed32}) {
@@ -140,9 +145,9 @@ TEST(NumberFormat, Fixed32IsRoundedOnceAsWholeNumbersAre) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed);
     std::mt19937_64 random(kSeed);
     // Of n / d, which is not negative, ties to even.
-    const auto rounded = [](__int128 n, __int128 d) {
-        const __int128 twice = 2 * (n % d);
-        __int128 k = n / d;
+    const auto rounded = [](std::int64_t n, std::int64_t d) {
+        const std::int64_t twice = 2 * (n % d);
+        std::int64_t k = n / d;
         if (twice > d || (twice == d && k % 2 == 1)) ++k;
         return k;
     };
@@ -151,16 +156,15 @@ TEST(NumberFormat, Fixed32IsRoundedOnceAsWholeNumbersAre) {
         const auto a = static_cast<std::int64_t>(random() % (1u << 31) >> random() % 31),
                    b = static_cast<std::int64_t>(random() % (1u << 31) >> random() % 31) + 1;
         const Fixed32 x(std::ldexp(double(a), -16)), y(std::ldexp(double(b), -16));
-        const auto expect = [&](const Fixed32& got, __int128 wanted) {
+        const auto expect = [&](const Fixed32& got, std::int64_t wanted) {
             ASSERT_EQ(got.beyond, wanted > 0x7fffffff) << a << " " << b;
-            ASSERT_EQ(std::ldexp(got.value, 16), double(std::min<__int128>(wanted, 0x7fffffff)))
+            ASSERT_EQ(std::ldexp(got.value, 16), double(std::min<std::int64_t>(wanted, 0x7fffffff)))
                 << a << " " << b;
         };
-        expect(x * y, rounded(static_cast<__int128>(a) * b, 1 << 16));
-        expect(x / y, rounded(static_cast<__int128>(a) << 16, b));
+        expect(x * y, rounded(a * b, 1 << 16));
+        expect(x / y, rounded(a << 16, b));
         // The root's square is nearest: k - 1/2 and k + 1/2 lie beside it.
-        const auto k = static_cast<__int128>(std::ldexp(sqrt(x).value, 16)), four = static_cast<__int128>(a)
-                                                                                    << 18;
+        const auto k = static_cast<std::int64_t>(std::ldexp(sqrt(x).value, 16)), four = a << 18;
         ASSERT_LE((2 * k - 1) * (k > 0 ? 2 * k - 1 : 0), four) << a;
         ASSERT_GE((2 * k + 1) * (2 * k + 1), four) << a;
     }
