@@ -358,6 +358,15 @@ TEST(Occluders, ManyNarrowShadowsMakeAWideOne) {
     EXPECT_EQ(Occluders(bars_of(80), {}).cover(wall, scale).share, ShadowCover::both);
 }
 
+TEST(Occluders, ANeedleThatIsMostlyLitIsNotHidden) {
+    // The end of a needle hardly wider than what is neglected lies in a shadow, which is as wide; the light beside it is narrower.
+    const Triangle needle{glm::dvec3(0, 0, -1), {0, .0101, -1}, {1, .00505, -1}};
+    const glm::dvec3 corners[] = {
+        {-.005, -.01, -.5}, {.025, -.01, -.5}, {.025, .015, -.5}, {-.005, .015, -.5}};
+    const Triangles shadow{{corners[0], corners[1], corners[2]}, {corners[0], corners[2], corners[3]}};
+    EXPECT_EQ(Occluders(corners_of(shadow), {}).cover(needle, {1, .01, 0x1p-40}).share, ShadowCover::both);
+}
+
 TEST(Occluders, WhatTouchesIsPaintedUpToTheContact) {
     // A post that stands on a floor, and the wall that it leans on.
     const Chart chart(Projection::equirectangular, 1024, 512);

@@ -305,10 +305,12 @@ bool EdgeRule::is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const 
         at[i] = chart.local_point(local, chart.branch(piece));
     }
     const double off = std::hypot(at[2].x - 0.5 * (at[0].x + at[1].x), at[2].y - 0.5 * (at[0].y + at[1].y));
+    // Texels are off by some ten roundings of numbers up to the panorama's size, two of them by twice that.
+    const double rounding = 64 * 0x1p-53 * std::max(chart.width(), chart.height());
     const bool is_within =
         at[2].x > 1 && at[2].x < chart.width() - 1 && at[2].y > 1 && at[2].y < chart.height() - 1;
     // Ends on either side of where azimuths begin are off by half of a turn.
-    return is_within && off > 1.001 * most && off < 0.1 * chart.width();
+    return is_within && off > 1.001 * most + rounding && off < 0.1 * chart.width();
 }
 
 EdgeFinding EdgeRule::judge(const glm::dvec3& a, const glm::dvec3& b) const {

@@ -363,8 +363,9 @@ class ShadowParts {
         }
         const bool dark_is_wide = m_all_dark || are_wide(m_dark, m_dark_widths);
         if (are_wide(light, light_widths)) return dark_is_wide ? corner() : ShadowCover{ShadowCover::lit};
-        // What has but strips of both is what most of it is.
-        return {!dark_is_wide && is_mostly_lit() ? ShadowCover::lit : ShadowCover::hidden};
+        // What has but strips of light is hidden, unless that is most of a narrow triangle, of which strips of dark may be neglected.
+        if (!is_mostly_lit()) return {ShadowCover::hidden};
+        return dark_is_wide ? corner() : ShadowCover{ShadowCover::lit};
     }
 
   private:
