@@ -439,6 +439,8 @@ function limitFov() {
   if (fixed) range.value = fov;
 }
 
+// Sizes of projections that have one shape.
+const SHAPES = new Map(Object.entries({ cubemap: "256x1536", cubemap3x2: "1080x720", cubecross: "960x720", dual_fisheye: "1280x640", dual_fisheye_tb: "540x1080", octahedral: "720x720" }));
 const FLAT = new Set(["rectilinear", "fisheye", "equisolid", "stereographic", "orthographic", "pannini", "cylindrical", "equirectangular", "dual_fisheye", "dual_fisheye_tb", "mercator"]);
 function showSettings() {
   for (const part of document.querySelectorAll("[data-mode]")) part.hidden = part.dataset.mode !== mode();
@@ -617,7 +619,9 @@ function listen() {
   for (const id of ["from", "srcfov", "view-lens", "lens", "lens-mode", "let", "u", "v", "tol", "filter", "size"]) on(id, "change", () => changed());
   on("to", "change", () => {
     limitFov();
-    $("fov").value = state.projections.get($("to").value).fov;
+    const to = $("to").value;
+    $("fov").value = state.projections.get(to).fov;
+    if (SHAPES.has(to)) $("size").value = SHAPES.get(to);
     changed();
   });
   on("preset", "change", () => {

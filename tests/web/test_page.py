@@ -105,6 +105,17 @@ class Page(unittest.TestCase):
                 self.driver.execute_script("document.querySelector(`input[value=${arguments[0]}]`).click()", mode)
                 self.expect_of_desktop(folder)
 
+    def test_every_projection_is_drawn(self):
+        names = self.driver.execute_script("return [...document.getElementById('to').options].map((o) => o.value)")
+        self.assertGreater(len(names), 15)
+        self.set("size", "640x360")
+        for name in names:
+            before = self.hash()
+            self.set("to", name)
+            if name != names[0]:
+                WebDriverWait(self.driver, 120, 0.2).until(lambda _: self.text("problem") or self.hash() != before)
+            self.assertFalse(self.get("problem").is_displayed(), name + ": " + self.text("problem"))
+
     def test_the_error_is_at_most_the_tolerance(self):
         for tol in ("0.001", "0.01", "0.1", "1"):
             self.set("tol", tol)
