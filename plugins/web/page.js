@@ -439,8 +439,14 @@ function limitFov() {
   if (fixed) range.value = fov;
 }
 
-// Sizes of projections that have one shape.
-const SHAPES = new Map(Object.entries({ cubemap: "256x1536", cubemap3x2: "1080x720", cubecross: "960x720", dual_fisheye: "1280x640", dual_fisheye_tb: "540x1080", octahedral: "720x720" }));
+// Projections with faces are drawn where those are square.
+function fitSize() {
+  const { columns, rows } = state.projections.get($("to").value);
+  const fits = ({ value }) => value.split("x")[0] * rows === value.split("x")[1] * columns;
+  const sizes = [...$("size").options];
+  if (columns && !sizes.some((size) => size.selected && fits(size))) $("size").value = sizes.find(fits).value;
+}
+
 const FLAT = new Set(["rectilinear", "fisheye", "equisolid", "stereographic", "orthographic", "pannini", "cylindrical", "equirectangular", "dual_fisheye", "dual_fisheye_tb", "mercator"]);
 function showSettings() {
   for (const part of document.querySelectorAll("[data-mode]")) part.hidden = part.dataset.mode !== mode();
@@ -619,9 +625,8 @@ function listen() {
   for (const id of ["from", "srcfov", "view-lens", "lens", "lens-mode", "let", "u", "v", "tol", "filter", "size"]) on(id, "change", () => changed());
   on("to", "change", () => {
     limitFov();
-    const to = $("to").value;
-    $("fov").value = state.projections.get(to).fov;
-    if (SHAPES.has(to)) $("size").value = SHAPES.get(to);
+    fitSize();
+    $("fov").value = state.projections.get($("to").value).fov;
     changed();
   });
   on("preset", "change", () => {

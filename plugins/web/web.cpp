@@ -46,11 +46,14 @@ Json described() {
     Json projections = Json::array();
     for (const Projection p : kProjections) {
         const FieldOfView fov = fov_of(p);
+        const FaceGrid faces = faces_of(p);
         projections.push_back({{"name", name_of(p)},
                                {"fov", fov.standard},
                                {"most", fov.most},
                                {"open", fov.open},
-                               {"fixed", fov.fixed}});
+                               {"fixed", fov.fixed},
+                               {"columns", faces.columns},
+                               {"rows", faces.rows}});
     }
     Json operations_json = Json::object();
     for (const Operation* operation : page_operations()) {

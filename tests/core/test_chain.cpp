@@ -728,7 +728,8 @@ Real share_of(const std::vector<Link>& links, int x, int y) {
     return static_cast<Real>(in) / kPoints;
 }
 
-TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
+/// Compares coverage with such shares: of one in so many of the pixels next to those that differ, and of some others.
+void compare_covers(int one_in) {
     const Size plate{310, 206};
     std::vector<ChainCase> cases = chain_cases();
     cases.push_back({"map of a turned plane, magnified", [=](const Settings& s) {
@@ -780,11 +781,10 @@ TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
             Real largest = 0, sum = 0;
             for (int y = 1; y + 1 < size.height; ++y)
                 for (int x = 1; x + 1 < size.width; ++x) {
-                    // A third of the pixels next to those that differ, and some others.
                     const float here = at(x, y);
                     const bool differs = here != at(x - 1, y) || here != at(x + 1, y) ||
                                          here != at(x, y - 1) || here != at(x, y + 1);
-                    if ((x + 7 * y) % (differs ? 3 : 397) != 0) continue;
+                    if ((x + 7 * y) % (differs ? one_in : 397) != 0) continue;
                     const Real truth = share_of(links, x, y);
                     if (!std::isfinite(truth)) continue;
                     const Real off = std::fabs(here - truth);
@@ -794,6 +794,13 @@ TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
             EXPECT_LT(largest, 0.02);
             EXPECT_LT(sum, 0.004L * std::max(crossed, 1));
         }
+}
+
+TEST(Chain, CoversOfAPixelWhatLiesInTheMiddle) {
+    compare_covers(3);
+}
+TEST(Chain, CoversOfEveryPixelWhatLiesInTheMiddle) {
+    compare_covers(1);
 }
 
 // Pixels that an edge of the picture in the middle crosses are exact, and few beside them: blocks are cut down to four pixels.

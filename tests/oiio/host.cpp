@@ -273,7 +273,7 @@ void expect_nothing_left_behind(const std::function<void(int, int)>& body, doubl
     // Freed memory is kept from use.
     megabytes = HUGE_VAL;
 #endif
-    EXPECT_LE(resident(), memory_before + megabytes);
+    EXPECT_LE(resident(), memory_before + megabytes * rounds(1000) / 1000);
 }
 
 void read_from_threads(OIIO::ImageCache& cache, const std::vector<std::string>& names,

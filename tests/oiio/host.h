@@ -91,7 +91,7 @@ std::vector<std::byte> bytes(const OIIO::ImageBuf& image);
 void expect_one_picture(const std::string& name, int x, int y);
 
 /// Calls body(first, last) for 200 rounds, then for rounds(1000) more, and checks that these leave no handles open,
-/// and at most so many megabytes behind.
+/// and of 1000 at most so many megabytes behind, in proportion.
 void expect_nothing_left_behind(const std::function<void(int, int)>& body, double megabytes);
 
 /// Reads random pixels of all these names through a cache, from several threads, and compares each with the

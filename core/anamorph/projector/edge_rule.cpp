@@ -291,8 +291,7 @@ bool EdgeRule::is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const 
     const Chart& chart = m_projector.panorama();
     const double most = kShare * m_tol, squared = glm::dot(a, a) * glm::dot(b, b);
     const glm::dvec3 across = glm::cross(a, b);
-    // A panorama bends about as a circle does: an edge of half the error that may be is not worth looking at. One that is tiny is
-    // shorter.
+    // A panorama bends about as a circle does. Where that is half of what may be or less, or out of double's range, the bound decides.
     const double bend = glm::dot(across, across) / squared * chart.pixels_per_radian() / 8;
     if (!(bend > 0.5 * most) || !(squared > 0x1p-800 && squared < 0x1p800)) return false;
     const glm::dvec3 middle = 0.5 * (a + b);
