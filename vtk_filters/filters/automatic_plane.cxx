@@ -118,10 +118,6 @@ bool is_flat_along_an_axis(const Bounds& bounds, int across) {
 
 }  // namespace
 
-bool distributed(vtkMultiProcessController* controller) {
-    return controller && controller->GetNumberOfProcesses() > 1;
-}
-
 void Bounds::add(const Bounds& other) {
     for (int c = 0; c < 3; ++c) {
         least[c] = std::min(least[c], other.least[c]);

@@ -10,14 +10,13 @@
 #include <vector>
 
 #include "anamorph/deform/plane_warp.h"
+#include "ranks.h"
 #include "vtkType.h"
 
 class vtkMultiProcessController;
 class vtkPointSet;
 
 namespace anamorph_vtk {
-
-bool distributed(vtkMultiProcessController* controller);
 
 /// The least and the largest coordinates of finite points.
 struct Bounds {

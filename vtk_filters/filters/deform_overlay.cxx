@@ -360,6 +360,12 @@ glm::dvec3 normal_at(const TrianglePlace& place, vtkPointSet* mesh) {
 
 }  // namespace
 
+glm::dvec4 turn_to(const glm::dvec3& normal, const anamorph::ParameterPlane& plane) {
+    // A plane of space with this normal is one of (u, v, w) with that of its products with where u, v and w go.
+    return anamorph::frame_at({glm::dot(normal, plane.axis_u()), glm::dot(normal, plane.axis_v()),
+                               glm::dot(normal, plane.normal())});
+}
+
 double find_anchor(const Deformation& bump, const std::vector<std::unique_ptr<DeformedMesh>>& meshes,
                    const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
                    const anamorph::ParameterPlane& plane, double (&anchor)[9]) {
@@ -368,10 +374,7 @@ double find_anchor(const Deformation& bump, const std::vector<std::unique_ptr<De
     glm::dvec3 normal = normal_at(place, undeformed[place.mesh]);
     if (!(glm::length(normal) > 0)) return kNowhere;
     normal = glm::normalize(normal);
-    // A plane of space with this normal is one of (u, v, w) with that of its products with where u, v and w go.
-    const glm::dvec3 in_parameters(glm::dot(normal, plane.axis_u()), glm::dot(normal, plane.axis_v()),
-                                   glm::dot(normal, plane.normal()));
-    const glm::dvec4 turn = anamorph::frame_at(in_parameters);
+    const glm::dvec4 turn = turn_to(normal, plane);
     const double length = glm::length(bump.vector);
     const glm::dvec3 vector = (glm::dot(bump.vector, normal) < 0 ? -length : length) * normal;
     anchor[0] = place.depth;
@@ -479,33 +482,38 @@ PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<D
     return place;
 }
 
+void for_each_meeting(
+    const glm::dvec3& from, const glm::dvec3& to, vtkPointSet* mesh, vtkPointSet* points,
+    const std::function<void(const MetPoint&, const std::array<vtkIdType, 3>& corners)>& take) {
+    const double beside = 1e-10 * glm::length(to - from);  // of an edge, whose two triangles round apart
+    vtkNew<vtkTriangle> triangle;
+    for_each_surface_cell(mesh, [&](vtkIdType count, const vtkIdType* p) {
+        for (vtkIdType i = 1; i + 1 < count; ++i) {
+            const std::array<vtkIdType, 3> corners = {p[0], p[i], p[i + 1]};
+            for (int k = 0; k < 3; ++k) {
+                const glm::dvec3 corner = point_of(points, corners[static_cast<std::size_t>(k)]);
+                triangle->GetPoints()->SetPoint(k, &corner.x);
+            }
+            MetPoint met{};
+            double coordinates[3];
+            int part;
+            if (triangle->IntersectWithLine(&from.x, &to.x, beside, met.along, &met.point.x, coordinates,
+                                            part))
+                take(met, corners);
+        }
+    });
+}
+
 std::optional<MetPoint> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
                                      const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
                                      const std::vector<vtkSmartPointer<vtkPointSet>>& deformed) {
-    const double beside = 1e-10 * glm::length(to - from);  // of an edge, whose two triangles round apart
     std::optional<MetPoint> found;
-    double first = std::numeric_limits<double>::infinity();
-    vtkNew<vtkTriangle> triangle;
-    for (std::size_t m = 0; m < std::min(undeformed.size(), deformed.size()); ++m) {
-        if (!deformed[m]->GetPoints()) continue;
-        for_each_surface_cell(undeformed[m], [&](vtkIdType count, const vtkIdType* p) {
-            for (vtkIdType i = 1; i + 1 < count; ++i) {
-                const std::array<vtkIdType, 3> ids = {p[0], p[i], p[i + 1]};
-                for (int k = 0; k < 3; ++k) {
-                    const glm::dvec3 corner = point_of(deformed[m], ids[static_cast<std::size_t>(k)]);
-                    triangle->GetPoints()->SetPoint(k, &corner.x);
-                }
-                double along, coordinates[3];
-                glm::dvec3 met;
-                int part;
-                if (!triangle->IntersectWithLine(&from.x, &to.x, beside, along, &met.x, coordinates, part) ||
-                    !(along < first))
-                    continue;
-                first = along;
-                found = {met, along};
-            }
-        });
-    }
+    for (std::size_t m = 0; m < std::min(undeformed.size(), deformed.size()); ++m)
+        if (deformed[m]->GetPoints())
+            for_each_meeting(from, to, undeformed[m], deformed[m],
+                             [&](const MetPoint& met, const std::array<vtkIdType, 3>&) {
+                                 if (!found || met.along < found->along) found = met;
+                             });
     return found;
 }
 

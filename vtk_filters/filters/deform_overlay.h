@@ -2,8 +2,11 @@
 // The + and the oval of each deformation, drawn on the deformed surface (Oka 1987, Fig. 4.1).
 #pragma once
 
+#include <array>
+#include <functional>
 #include <glm/vec2.hpp>
-#include <limits>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "anamorph/deform/formula_displacement.h"
 #include "anamorph/deform/plane_warp.h"
 #include "deformed_mesh.h"
+#include "ranks.h"
 #include "vtkSmartPointer.h"
 
 class vtkPointSet;
@@ -36,9 +40,8 @@ void draw_overlay(const std::vector<anamorph::Deformation>& list, const std::vec
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay);
 
-/// What the functions below return where they find nothing; else it is the less the better what they found is, so that
-/// ranks can tell whose is the best.
-inline constexpr double kNowhere = std::numeric_limits<double>::infinity();
+// The functions below return kNowhere where they find nothing; else it is the less the better what they found is, so that ranks can tell
+// whose is the best (take_best).
 
 /// Finds how far from a plane deformed meshes are at the centre of a bump, of several points where it moves them most, and at its
 /// centre plus its extent near by in depth: at the points of the meshes that are nearest. What is not found is left as it is.
@@ -72,10 +75,18 @@ PickedPlace find_place(const glm::dvec3& at, const std::vector<std::unique_ptr<D
                        const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
                        const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
 
+/// Calls take(point, how far along, the corners) where a line meets the triangles of a mesh's surface cells, whose points are those of `points`.
+void for_each_meeting(
+    const glm::dvec3& from, const glm::dvec3& to, vtkPointSet* mesh, vtkPointSet* points,
+    const std::function<void(const MetPoint&, const std::array<vtkIdType, 3>& corners)>& take);
+
 /// Finds the point where a line first meets the deformed meshes; none if it misses them.
 std::optional<MetPoint> find_on_line(const glm::dvec3& from, const glm::dvec3& to,
                                      const std::vector<vtkSmartPointer<vtkPointSet>>& undeformed,
                                      const std::vector<vtkSmartPointer<vtkPointSet>>& deformed);
+
+/// The turn of a bump whose depth is along a normal of length 1 in space.
+glm::dvec4 turn_to(const glm::dvec3& normal, const anamorph::ParameterPlane& plane);
 
 /// Finds the part of undeformed meshes that is over the centre of a bump, of several the one nearest to it in depth: the depth there, an
 /// extent in depth, the turn that lays the depth along the normal (a mean of those of the cells at the corners of that part), and V along it,

@@ -15,6 +15,7 @@
 #include "anamorph/formula/formula_text.h"
 #include "anamorph/parameter/parameter.h"
 #include "automatic_plane.h"
+#include "default_bump.h"
 #include "deform_overlay.h"
 #include "deformation_numbers.h"
 #include "deformed_mesh.h"
@@ -106,20 +107,6 @@ std::vector<Numbers> table_of(vtkTable* table, vtkMultiProcessController* contro
         if (!failure.empty()) throw Error(failure);
         throw;
     }
-}
-
-/// Gives all ranks the numbers of the one that is least apart; those of the first where none has any.
-void take_best(double* numbers, std::size_t count, double apart, vtkMultiProcessController* controller) {
-    if (!distributed(controller)) return;
-    std::vector<double> own(numbers, numbers + count);
-    own.push_back(apart);
-    const auto ranks = static_cast<std::size_t>(controller->GetNumberOfProcesses());
-    std::vector<double> all(ranks * own.size());
-    controller->AllGather(own.data(), all.data(), static_cast<vtkIdType>(own.size()));
-    const double* best = all.data();
-    for (std::size_t r = 1; r < ranks; ++r)
-        if (const double* const other = &all[r * own.size()]; other[count] < best[count]) best = other;
-    std::copy_n(best, count, numbers);
 }
 
 /// A deformation of a filter's own list; none beyond it, or after an error.
@@ -387,6 +374,20 @@ int vtkAnamorphDeform::AnchorDeformation(int position) {
     return 1;
 }
 
+int vtkAnamorphDeform::AddDefaultDeformation() {
+    this->FindDefault();
+    const double* d = this->DefaultDeformation;
+    if (d[2] == 0) {
+        vtkErrorMacro(
+            "there is no surface to put a deformation on, by the last execution: it must have points");
+        return -1;
+    }
+    const int position = this->AddDeformation(d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], d[8]);
+    this->SetDepth(position, d[9], d[10], d[11]);
+    this->SetOrientation(position, d[12], d[13], d[14], d[15]);
+    return position;
+}
+
 vtkDoubleArray* vtkAnamorphDeform::GetAllDeformations() {
     this->AllDeformations = columns_of(this->DeformationList->GetAll(), 0, 9);
     return this->AllDeformations;
@@ -537,7 +538,7 @@ void vtkAnamorphDeform::Find(double (&numbers)[Count], bool on_plane, const Sear
     std::fill_n(numbers, Count, 0.0);
     const std::optional<Deformation> bump =
         kept.on_plane == on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
-    take_best(numbers, Count, bump ? search(*bump, kept) : anamorph_vtk::kNowhere, this->Controller);
+    anamorph_vtk::take_best(numbers, Count, bump ? search(*bump, kept) : anamorph_vtk::kNowhere, this->Controller);
 }
 
 void vtkAnamorphDeform::FindHeights() {
@@ -558,6 +559,25 @@ void vtkAnamorphDeform::FindAnchor() {
     this->Find(this->SelectedAnchor, true, [this](const Deformation& bump, const Kept& kept) {
         return anamorph_vtk::find_anchor(bump, kept.meshes, kept.undeformed, kept.used_plane,
                                          this->SelectedAnchor);
+    });
+}
+
+void vtkAnamorphDeform::FindDefault() {
+    std::fill_n(this->DefaultDeformation, 16, 0.0);
+    const Kept& kept = *this->Meshes;
+    anamorph_vtk::guarded(this, [&] {
+        const auto found = anamorph_vtk::find_default_bump(
+            kept.meshes, kept.undeformed, kept.on_plane ? &kept.used_plane : nullptr, this->Controller);
+        if (!found) return;
+        const Numbers numbers = anamorph_vtk::numbers_of({found->bump});
+        std::copy_n(numbers.begin(), 16, this->DefaultDeformation);
+        const bool first = !this->Controller || this->Controller->GetLocalProcessId() == 0;
+        if (first && found->points < anamorph_vtk::DefaultBump::kEnough)
+            vtkWarningMacro(
+                << "the mesh is coarse: it has " << found->points
+                << " of its points within the extents of the deformation that it gets first, which "
+                   "pulls them out. A finer mesh shows it round, by a higher resolution of its source "
+                   "or from the filter Subdivide (after Triangulate)");
     });
 }
 
@@ -602,7 +622,7 @@ void vtkAnamorphDeform::Pick(const std::array<double, 3>& at, std::optional<doub
     // The point, u, v, w, and 1 where there is one.
     double picked[7] = {
         at[0], at[1], at[2], place.parameters.x, place.parameters.y, depth, place.found ? 1.0 : 0.0};
-    take_best(picked, 7, place.found ? distance.value_or(place.square) : anamorph_vtk::kNowhere,
+    anamorph_vtk::take_best(picked, 7, place.found ? distance.value_or(place.square) : anamorph_vtk::kNowhere,
               this->Controller);
     std::copy_n(picked, 3, this->PickedPoint);
     std::copy_n(picked + 3, 4, this->PickedParameters);

@@ -110,6 +110,15 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * All ranks of the controller call it together, and take the best of all their parts.
      */
     int AnchorDeformation(int position);
+    /**
+     * Adds a deformation that shows on the surface of the last execution without knowing it: a tenth of its diagonal high and a sixth of
+     * its lengths wide, outwards, on the side of an eye that looks from where x, y and z are large. Where one part of the surface
+     * alone is over the middle of the plane it is there, straight on the plane; elsewhere, as on closed surfaces, it has a depth and a
+     * frame as AnchorDeformation() gives them, so that the far side stays. On a mesh with hardly a point within its extents it is put onto
+     * the nearest one, and a warning says how few it has. In texture coordinates it has no depth. Returns its position, or -1 after an error: where there are no
+     * points. All ranks of the controller call it together.
+     */
+    int AddDefaultDeformation();
     ///@}
 
     ///@{
@@ -336,6 +345,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void FindAnchor();
     double* GetSelectedAnchor() VTK_SIZEHINT(9);
     /**
+     * What AddDefaultDeformation() would add, as FindDefault() found it, which all ranks of the controller call together: the nine numbers of a
+     * deformation, its depth (three), and its orientation (four); all 0 where there are no points.
+     */
+    void FindDefault();
+    double* GetDefaultDeformation() VTK_SIZEHINT(16) { return this->DefaultDeformation; }
+    /**
      * What is at the point of the deformed surface of the last execution that is nearest to the one given to PickAt(): u, v, the depth w
      * from the plane (0 for texture coordinates), and 1; all 0 where there is no surface. PickOnLine() takes the point where a line
      * first meets the deformed surface, or none (not a number). All ranks of the controller call these two together, and find
@@ -394,6 +409,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     int OutputPointsPrecision = DEFAULT_PRECISION;
     int SelectedDeformation = 0;
     double SelectedHeights[2] = {}, SelectedFrame[9] = {}, SelectedAnchor[9] = {};
+    double DefaultDeformation[16] = {};
     double PickedPoint[3] = {}, PickedParameters[4] = {};
     bool ComputeFolds = false;
     double LeastJacobian = 1, LeastJacobianPoint[3] = {};

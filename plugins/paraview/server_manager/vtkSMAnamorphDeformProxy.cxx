@@ -13,6 +13,7 @@
 #include "vtkClientServerStream.h"
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVDataInformation.h"
 #include "vtkRenderer.h"
 #include "vtkSMOutputPort.h"
 #include "vtkSMProperty.h"
@@ -129,6 +130,8 @@ constexpr const char* kParts[3] = {"Deformations", "Depths", "Frames"};
 constexpr std::size_t kPartColumns[3] = {9, 3, 7};
 constexpr Column kTable[] = {{0, 0}, {0, 1}, {1, 0}, {0, 2}, {0, 3}, {1, 1}, {0, 4}, {0, 5}, {0, 6}, {0, 7},
                              {0, 8}, {1, 2}, {2, 0}, {2, 1}, {2, 2}, {2, 3}, {2, 4}, {2, 5}, {2, 6}};
+/// The numbers of the default bump: those of Deformations, Depths and the turn of Frames; and the extent in depth among them.
+constexpr std::size_t kDefaultNumbers = 16, kDefaultDepth = 10;
 constexpr std::size_t kTableColumns = sizeof(kTable) / sizeof(kTable[0]);
 
 /// What rows that a part does not have are.
@@ -178,6 +181,7 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     if (is_one_of(name, {"ImportFile", "ExportFile"})) this->FilesPending = true;
     // Where rows are set anew, so are their depths: the server then has those of the rows that there are.
     if (is_one_of(name, {"Deformations"})) {
+        this->ForgetDefault();
         this->Superclass::SetPropertyModifiedFlag("Depths", 1);
         this->Superclass::SetPropertyModifiedFlag("Frames", 1);
         this->ListEdited = true;
@@ -268,6 +272,88 @@ void vtkSMAnamorphDeformProxy::ImportDeformations(const char* file) {
     for (unsigned int i = 0; i < names_read.GetNumberOfElements(); ++i)
         names.Set(i, names_read.GetAsString(i));
     this->ShowBumps();
+}
+
+// ---- The bump that a new list begins with ----
+
+std::vector<double> vtkSMAnamorphDeformProxy::DefaultRow(vtkSMProperty* property) {
+    const std::string name = this->GetPropertyName(property);
+    if (name == "Deformations") this->FindDefault();
+    std::size_t first = 0;
+    for (std::size_t p = 0; p < 3 && !this->DefaultBump.empty(); first += kPartColumns[p++]) {
+        // Frames are of 7 numbers, of which the bump has a turn; nothing else of them is not as in a new one.
+        std::vector<double> part(kPartColumns[p], 0);
+        const auto begin = this->DefaultBump.begin() + static_cast<std::ptrdiff_t>(first);
+        std::copy_n(begin, std::min(part.size(), kDefaultNumbers - first), part.begin());
+        if (p > 0 && this->DefaultBump[kDefaultDepth] == 0) return {};
+        if (name == kParts[p]) return part;
+        if (numbers_of(this, kParts[p]) != part) return {};
+    }
+    return {};
+}
+
+void vtkSMAnamorphDeformProxy::SetDefault(const std::function<void()>& set) {
+    const bool depths = this->Pending->depths, frames = this->Pending->frames;
+    set();
+    this->Pending->depths = depths;
+    this->Pending->frames = frames;
+}
+
+/// Lets a filter of its own, with the same input, look for it.
+void vtkSMAnamorphDeformProxy::FindDefault() {
+    this->DefaultBump.clear();
+    const char* file = vtkSMPropertyHelper(this, "FileName", true).GetAsString();
+    if ((file && *file) || vtkSMPropertyHelper(this, "Table", true).GetNumberOfElements() > 0) return;
+    double bounds[6];
+    if (!input_bounds(this, bounds)) return;
+    const auto seeker = vtk::TakeSmartPointer(vtkSMAnamorphDeformProxy::SafeDownCast(
+        this->GetSessionProxyManager()->NewProxy(this->GetXMLGroup(), this->GetXMLName())));
+    if (!seeker) return;
+    seeker->SetLocation(this->GetLocation());
+    const WhileHeld step(seeker->InStep);
+    for (const char* name : {"Input", "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"})
+        seeker->GetProperty(name)->Copy(this->GetProperty(name));
+    vtkSMPropertyHelper(seeker, "ComputeNormals").Set(0);
+    vtkSMPropertyHelper(seeker, "ComputeDisplacement").Set(0);
+    seeker->UpdateVTKObjects();
+    vtkSMOutputPort* port = vtkSMPropertyHelper(this, "Input", true).GetAsOutputPort();
+    // At the time that the input is of, so that it does not execute again.
+    vtkPVDataInformation* information = port->GetDataInformation();
+    if (information->GetHasTime())
+        seeker->UpdatePipeline(information->GetTime());
+    else
+        seeker->UpdatePipeline();
+    seeker->Find("FindDefault");
+    seeker->UpdatePropertyInformation(seeker->GetProperty("DefaultDeformation"));
+    const std::vector<double> found = numbers_of(seeker, "DefaultDeformation");
+    constexpr std::size_t kExtentAt = 2;  // 0 where there is nothing
+    if (found.size() == kDefaultNumbers && found[kExtentAt] > 0) this->DefaultBump = found;
+}
+
+/// Another list than the default, or one made of it, has no depth and no turn by it.
+void vtkSMAnamorphDeformProxy::ForgetDefault() {
+    if (this->DefaultBump.empty() || this->DefaultBump[kDefaultDepth] == 0 || this->Pending->depths ||
+        this->Pending->frames)
+        return;
+    const std::vector<double> list = numbers_of(this, "Deformations");
+    if (list.size() >= kPartColumns[0]) {
+        std::size_t changed = 0;
+        for (std::size_t i = 0; i < kPartColumns[0]; ++i) changed += list[i] != this->DefaultBump[i];
+        if (list[0] == this->DefaultBump[0] && list[1] == this->DefaultBump[1] &&
+            changed <= kPartColumns[0] / 2)
+            return;
+    }
+    const auto is_default = [&](std::size_t part, std::size_t first, std::size_t count) {
+        const std::vector<double> rows = numbers_of(this, kParts[part]);
+        return rows.size() == kPartColumns[part] &&
+               std::equal(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count),
+                          this->DefaultBump.begin() + static_cast<std::ptrdiff_t>(first));
+    };
+    if (is_default(1, kPartColumns[0], 3) && is_default(2, kPartColumns[0] + kPartColumns[1], 4)) {
+        set_numbers(this, "Depths", nullptr, 0);
+        set_numbers(this, "Frames", nullptr, 0);
+    }
+    this->DefaultBump.clear();
 }
 
 // ---- The list and the handles ----

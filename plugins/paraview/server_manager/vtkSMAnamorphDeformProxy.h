@@ -17,6 +17,9 @@
  * Bumps is the whole table: the columns of the properties Deformations, Depths and Frames, which the server has, row by row, so that a
  * row that is removed, moved or added takes all of its own along. What is set of the parts is shown in the table, and the other way round.
  *
+ * A new list begins with a bump that shows on the input, which on closed surfaces has rows of Depths and Frames. A script that then gives another list
+ * of Deformations alone, as scripts did before there were the others, gets that list: these rows go.
+ *
  * Scripts that remove rows from Deformations alone, and do not set Depths or Frames in the same step, lose the rows of these that
  * belong to them.
  *
@@ -39,8 +42,9 @@
 #include "AnamorphServerManagerModule.h"  // for the export macro
 #include "vtkSMAnamorphSourceProxy.h"
 
-#include <memory>  // for the edits and the mouse
-#include <vector>  // for lists
+#include <functional>  // for defaults
+#include <memory>      // for the edits and the mouse
+#include <vector>      // for lists
 
 namespace anamorph_paraview {
 class ViewMouse;
@@ -61,6 +65,16 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
      * surface at the centre of the selected deformation; null where there was none, or the parameters are others than then.
      */
     const double* GetUsedPlane();
+
+    /**
+     * What a list's property (Deformations, or after it Depths, and after that Frames) has of the deformation that a new list begins
+     * with; nothing where there is no surface yet, a file or a table gives the list, or the properties before it have another one.
+     */
+    std::vector<double> DefaultRow(vtkSMProperty* property);
+    /**
+     * Calls what sets a property to its default, which is not an edit of it.
+     */
+    void SetDefault(const std::function<void()>& set);
 
   protected:
     vtkSMAnamorphDeformProxy();
@@ -88,6 +102,8 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void SplitBumps();
     void ShowBumps();
     bool TakeAnchor(double* row);
+    void FindDefault();
+    void ForgetDefault();
     void AnchorSelected();
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
@@ -103,11 +119,12 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
     double UsedPlane[9] = {};
     bool UsedPlaneKnown = false;
-    int UsedMode = 0;                ///< ParameterMode of the last update
-    std::vector<double> KnownList;   ///< Deformations, as they were sent last
-    bool ListEdited = false;         ///< Deformations has been written to since
-    double Heights[2] = {};          ///< of the handles of the centre and the corner over the plane
-    std::unique_ptr<Edits> Pending;  ///< edits since the last update
+    int UsedMode = 0;                 ///< ParameterMode of the last update
+    std::vector<double> KnownList;    ///< Deformations, as they were sent last
+    bool ListEdited = false;          ///< Deformations has been written to since
+    double Heights[2] = {};           ///< of the handles of the centre and the corner over the plane
+    std::unique_ptr<Edits> Pending;   ///< edits since the last update
+    std::vector<double> DefaultBump;  ///< the sixteen numbers of the default that was given last
     std::vector<double>
         DraggedRow;  ///< that the server has in place of the selected one; none if it has that
     std::unique_ptr<anamorph_paraview::ViewMouse> Mouse;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * @class   vtkSMAnamorphDeformationDomain
- * @brief   What a new deformation looks like: in the middle of the input, of a size that can be seen.
+ * @brief   What a new list of deformations begins with: one that shows.
  *
- * The default of a list of deformations: one, at the centre of the input's bounds, whose extents are a sixth
- * of its sizes and whose vector, along the normal of the plane, is a tenth of its diagonal.
+ * The default of the properties that a list consists of: what vtkAnamorphDeform::AddDefaultDeformation() makes on the input, each
+ * property its part of it.
  */
 #ifndef vtkSMAnamorphDeformationDomain_h
 #define vtkSMAnamorphDeformationDomain_h
