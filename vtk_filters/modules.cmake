@@ -6,7 +6,7 @@ if(ANAMORPH_TOOLKIT STREQUAL "PARAVIEW")
     set(find_toolkit "find_package(ParaView REQUIRED COMPONENTS RemotingCore RemotingServerManager RemotingViews)")
 else()
     set(find_toolkit "find_package(VTK 9.1 REQUIRED COMPONENTS CommonExecutionModel FiltersCore FiltersGeneral
-             FiltersGeometry FiltersSources IOCore IOGeometry IOImage ImagingCore ParallelCore RenderingOpenGL2 WrappingPythonCore Python)")
+             FiltersGeometry FiltersModeling FiltersSources IOCore IOGeometry IOImage ImagingCore ParallelCore RenderingOpenGL2 WrappingPythonCore Python)")
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)

@@ -10,6 +10,7 @@
 #include "automatic_plane.h"
 #include "deform_overlay.h"
 #include "ranks.h"
+#include "subdivided.h"
 #include "surface_normals.h"
 #include "vtkCommunicator.h"
 #include "vtkGeometryFilter.h"
@@ -76,10 +77,11 @@ class Search {
         DefaultBump found{bump_at(place, deep, 1, false)};
         found.points = points_in(found.bump);
         if (found.points >= DefaultBump::kEnough) return found;
+        found.subdivisions = subdivisions_at(place);
+        if (found.subdivisions > 0) return found;
         // Onto a point, and as far as the next.
-        const double wide = std::min(space_extent(0), space_extent(1));
         place = nearest_point(place);
-        const double grown = std::clamp(next_point(place.point) / wide, 1.0, 2.0);
+        const double grown = std::clamp(next_point(place.point) / width(), 1.0, 2.0);
         found.bump = bump_at(place, deep, m_plane ? grown : 1, true);
         found.points = points_in(found.bump);
         return found;
@@ -239,6 +241,35 @@ class Search {
         return static_cast<int>(std::min(count, static_cast<double>(DefaultBump::kEnough)));
     }
 
+    /// How often edges about a place are to be halved to be short for the bump; 0 where that cannot be.
+    int subdivisions_at(const Place& place) const {
+        constexpr double kShort = 0.6;              // of the extent
+        constexpr double kMostTriangles = 1 << 20;  // that nobody has asked for
+        const double wide = width();
+        double longest = 0, triangles = 0, other = 0;
+        for (const Surface& surface : m_surfaces) {
+            if (!has_polygons_alone(surface.mesh)) other = 1;
+            for_each_surface_cell(surface.mesh, [&](vtkIdType count, const vtkIdType* p) {
+                triangles += static_cast<double>(count - 2);
+                glm::dvec3 least(Bounds::kInfinity), most(-Bounds::kInfinity);
+                for (vtkIdType i = 0; i < count; ++i) {
+                    least = glm::min(least, point_of(surface.mesh, p[i]));
+                    most = glm::max(most, point_of(surface.mesh, p[i]));
+                }
+                const glm::dvec3 apart = glm::max(least - place.point, place.point - most);
+                if (std::max({apart.x, apart.y, apart.z}) <= wide)
+                    longest = std::max(longest, glm::distance(least, most));
+            });
+        }
+        double found[2] = {longest, other};
+        reduce(found, 2, vtkCommunicator::MAX_OP);
+        reduce(&triangles, 1, vtkCommunicator::SUM_OP);
+        if (found[1] != 0 || !(triangles > 0) || !(wide > 0)) return 0;
+        const double wanted = std::ceil(std::log2(found[0] / (kShort * wide))),
+                     most = std::floor(std::log2(kMostTriangles / triangles) / 2);
+        return static_cast<int>(std::clamp(std::min(wanted, most), 0.0, 6.0));
+    }
+
     /// The mean of the normals, by area, of the cells about a place that look to the eye.
     glm::dvec3 normal_at(const Place& place, double reach) const {
         glm::dvec3 sum(0.0);
@@ -259,6 +290,9 @@ class Search {
         return length > 0 && std::isfinite(length) ? sum / length : kToEye;
     }
 
+    /// How wide the bump is in space, the narrower way.
+    double width() const { return m_plane ? std::min(space_extent(0), space_extent(1)) : m_diagonal / 6; }
+
     /// How far a bump reaches in space along u (0) or v (1).
     double space_extent(int i) const {
         return m_plane ? m_extent[i] * glm::length(i == 0 ? m_plane->axis_u() : m_plane->axis_v()) : 0;
@@ -275,8 +309,7 @@ class Search {
             bump.vector = (glm::dot(up, kToEye) < 0 ? -height : height) * up;
             return bump;
         }
-        const double wide = m_plane ? std::min(space_extent(0), space_extent(1)) : m_diagonal / 6;
-        const glm::dvec3 normal = normal_at(place, on_point ? kSame * m_diagonal : wide);
+        const glm::dvec3 normal = normal_at(place, on_point ? kSame * m_diagonal : width());
         bump.vector = height * normal;
         if (!m_plane) return bump;
         bump.center_w = m_plane->depth(place.point);

@@ -22,6 +22,7 @@
 #include "execution.h"
 #include "explicit_points.h"
 #include "input_times.h"
+#include "subdivided.h"
 #include "vtkAnamorphDeformationList.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
@@ -192,29 +193,34 @@ void add_field_value(vtkDataObject* object, const char* name, double value) {
 }  // namespace
 
 struct vtkAnamorphDeform::Kept {
-    /// A grid whose points are implied, with explicit ones, which stay while it does.
-    struct Grid {
+    /// What is moved in place of a leaf, which stays while that does: a grid with explicit points, or a surface with more.
+    struct Made {
         vtkMTimeType time = 0;
+        int subdivisions = 0;
         vtkSmartPointer<vtkPointSet> points;
     };
 
     std::vector<std::unique_ptr<DeformedMesh>> meshes;  ///< by leaf
-    std::vector<Grid> grids;                            ///< by leaf
+    std::vector<Made> made;                             ///< by leaf
     anamorph_vtk::AutomaticPlane plane;
     std::vector<vtkSmartPointer<vtkPointSet>> deformed, undeformed;  ///< by leaf
     anamorph::ParameterPlane used_plane;
     bool on_plane = false;
 
-    vtkSmartPointer<vtkPointSet> with_explicit_points(vtkDataObject* data, std::size_t leaf) {
-        if (auto* points = vtkPointSet::SafeDownCast(data)) return points;
-        if (grids.size() <= leaf) grids.resize(leaf + 1);
-        // Times are given once only, so that of the grid tells it from others too.
+    vtkSmartPointer<vtkPointSet> to_be_moved(vtkDataObject* data, std::size_t leaf, int subdivisions) {
+        auto* points = vtkPointSet::SafeDownCast(data);
+        if (!vtkPolyData::SafeDownCast(data)) subdivisions = 0;
+        if (points && subdivisions == 0) return points;
+        if (made.size() <= leaf) made.resize(leaf + 1);
+        // Times are given once only, so that of the leaf tells it from others too.
         const vtkMTimeType time = anamorph_vtk::time_of_points(data);
-        if (grids[leaf].time != time) {
-            grids[leaf] = {};
-            grids[leaf] = {time, anamorph_vtk::with_explicit_points(data)};
+        if (made[leaf].time != time || made[leaf].subdivisions != subdivisions) {
+            made[leaf] = {};
+            made[leaf] = {time, subdivisions,
+                          points ? anamorph_vtk::subdivided(points, subdivisions)
+                                 : anamorph_vtk::with_explicit_points(data)};
         }
-        return grids[leaf].points;
+        return made[leaf].points;
     }
 };
 
@@ -253,6 +259,7 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
     write("UsedAxis1", this->UsedAxis1);
     write("UsedAxis2", this->UsedAxis2);
     os << indent << "Cutoff: " << this->Cutoff << "\n"
+       << indent << "Subdivisions: " << this->Subdivisions << "\n"
        << indent << "ComputeFolds: " << this->ComputeFolds << "\n"
        << indent << "LeastJacobian: " << this->LeastJacobian << "\n"
        << indent << "ComputeNormals: " << this->ComputeNormals << "\n"
@@ -385,6 +392,7 @@ int vtkAnamorphDeform::AddDefaultDeformation() {
     const int position = this->AddDeformation(d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], d[8]);
     this->SetDepth(position, d[9], d[10], d[11]);
     this->SetOrientation(position, d[12], d[13], d[14], d[15]);
+    if (d[16] > 0) this->SetSubdivisions(static_cast<int>(d[16]));
     return position;
 }
 
@@ -538,7 +546,8 @@ void vtkAnamorphDeform::Find(double (&numbers)[Count], bool on_plane, const Sear
     std::fill_n(numbers, Count, 0.0);
     const std::optional<Deformation> bump =
         kept.on_plane == on_plane ? deformation_of(this, this->SelectedDeformation) : std::nullopt;
-    anamorph_vtk::take_best(numbers, Count, bump ? search(*bump, kept) : anamorph_vtk::kNowhere, this->Controller);
+    anamorph_vtk::take_best(numbers, Count, bump ? search(*bump, kept) : anamorph_vtk::kNowhere,
+                            this->Controller);
 }
 
 void vtkAnamorphDeform::FindHeights() {
@@ -563,7 +572,7 @@ void vtkAnamorphDeform::FindAnchor() {
 }
 
 void vtkAnamorphDeform::FindDefault() {
-    std::fill_n(this->DefaultDeformation, 16, 0.0);
+    std::fill_n(this->DefaultDeformation, 17, 0.0);
     const Kept& kept = *this->Meshes;
     anamorph_vtk::guarded(this, [&] {
         const auto found = anamorph_vtk::find_default_bump(
@@ -571,13 +580,18 @@ void vtkAnamorphDeform::FindDefault() {
         if (!found) return;
         const Numbers numbers = anamorph_vtk::numbers_of({found->bump});
         std::copy_n(numbers.begin(), 16, this->DefaultDeformation);
+        // On top of those that the meshes have already.
+        this->DefaultDeformation[16] =
+            found->subdivisions == 0
+                ? 0
+                : std::min(this->Subdivisions + found->subdivisions, anamorph_vtk::kMostSubdivisions);
         const bool first = !this->Controller || this->Controller->GetLocalProcessId() == 0;
-        if (first && found->points < anamorph_vtk::DefaultBump::kEnough)
+        if (first && found->subdivisions == 0 && found->points < anamorph_vtk::DefaultBump::kEnough)
             vtkWarningMacro(
                 << "the mesh is coarse: it has " << found->points
                 << " of its points within the extents of the deformation that it gets first, which "
                    "pulls them out. A finer mesh shows it round, by a higher resolution of its source "
-                   "or from the filter Subdivide (after Triangulate)");
+                   "or from the filter Subdivide, after Extract Surface and Triangulate");
     });
 }
 
@@ -623,7 +637,7 @@ void vtkAnamorphDeform::Pick(const std::array<double, 3>& at, std::optional<doub
     double picked[7] = {
         at[0], at[1], at[2], place.parameters.x, place.parameters.y, depth, place.found ? 1.0 : 0.0};
     anamorph_vtk::take_best(picked, 7, place.found ? distance.value_or(place.square) : anamorph_vtk::kNowhere,
-              this->Controller);
+                            this->Controller);
     std::copy_n(picked, 3, this->PickedPoint);
     std::copy_n(picked + 3, 4, this->PickedParameters);
 }
@@ -699,7 +713,7 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
         } catch (...) {
             this->Meshes->meshes.clear();
             this->Meshes->deformed.clear();
-            this->Meshes->grids.clear();
+            this->Meshes->made.clear();
             throw;
         }
     };
@@ -735,7 +749,7 @@ struct vtkAnamorphDeform::Run {
 void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
     vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
     const auto add = [&](vtkDataObject* in, vtkPointSet* out) {
-        leaves.push_back({filter.Meshes->with_explicit_points(in, leaves.size()), out});
+        leaves.push_back({filter.Meshes->to_be_moved(in, leaves.size(), filter.Subdivisions), out});
         out->ShallowCopy(leaves.back().in);
     };
     if (auto* tree = vtkDataObjectTree::SafeDownCast(input)) {
@@ -758,7 +772,7 @@ void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
         add(input, vtkPointSet::SafeDownCast(output));
     }
     filter.Meshes->meshes.resize(leaves.size());
-    filter.Meshes->grids.resize(leaves.size());
+    filter.Meshes->made.resize(leaves.size());
 }
 
 void vtkAnamorphDeform::Run::choose_plane() {

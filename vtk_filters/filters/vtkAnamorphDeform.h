@@ -114,8 +114,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * Adds a deformation that shows on the surface of the last execution without knowing it: a tenth of its diagonal high and a sixth of
      * its lengths wide, outwards, on the side of an eye that looks from where x, y and z are large. Where one part of the surface
      * alone is over the middle of the plane it is there, straight on the plane; elsewhere, as on closed surfaces, it has a depth and a
-     * frame as AnchorDeformation() gives them, so that the far side stays. On a mesh with hardly a point within its extents it is put onto
-     * the nearest one, and a warning says how few it has. In texture coordinates it has no depth. Returns its position, or -1 after an error: where there are no
+     * frame as AnchorDeformation() gives them, so that the far side stays. Where a mesh of polygons has hardly a point within its extents,
+     * Subdivisions becomes what it takes; on other such meshes it is put onto the nearest point, and a warning says how few it has. In texture coordinates it has no depth. Returns its position, or -1 after an error: where there are no
      * points. All ranks of the controller call it together.
      */
     int AddDefaultDeformation();
@@ -234,6 +234,16 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
+     * How often the triangles of a surface, whose polygons are cut into them, are cut into four before points are moved: coarse surfaces
+     * show no bump without, and what comes out then has other points and cells than the input. For vtkPolyData of polygons alone, in which no edge
+     * is of more than two triangles; other polygonal data are refused, and grids left as they are. From 0 to 10. Default: 0.
+     */
+    vtkSetClampMacro(Subdivisions, int, 0, 10);
+    vtkGetMacro(Subdivisions, int);
+    ///@}
+
+    ///@{
+    /**
      * The value below which Gaussians are cut off, from 0 (nowhere) to 0.5. Default: 1e-7.
      */
     vtkSetMacro(Cutoff, double);
@@ -346,10 +356,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     double* GetSelectedAnchor() VTK_SIZEHINT(9);
     /**
      * What AddDefaultDeformation() would add, as FindDefault() found it, which all ranks of the controller call together: the nine numbers of a
-     * deformation, its depth (three), and its orientation (four); all 0 where there are no points.
+     * deformation, its depth (three), its orientation (four), and Subdivisions; all 0 where there are no points.
      */
     void FindDefault();
-    double* GetDefaultDeformation() VTK_SIZEHINT(16) { return this->DefaultDeformation; }
+    double* GetDefaultDeformation() VTK_SIZEHINT(17) { return this->DefaultDeformation; }
     /**
      * What is at the point of the deformed surface of the last execution that is nearest to the one given to PickAt(): u, v, the depth w
      * from the plane (0 for texture coordinates), and 1; all 0 where there is no surface. PickOnLine() takes the point where a line
@@ -409,7 +419,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     int OutputPointsPrecision = DEFAULT_PRECISION;
     int SelectedDeformation = 0;
     double SelectedHeights[2] = {}, SelectedFrame[9] = {}, SelectedAnchor[9] = {};
-    double DefaultDeformation[16] = {};
+    double DefaultDeformation[17] = {};
+    int Subdivisions = 0;
     double PickedPoint[3] = {}, PickedParameters[4] = {};
     bool ComputeFolds = false;
     double LeastJacobian = 1, LeastJacobianPoint[3] = {};

@@ -130,8 +130,8 @@ constexpr const char* kParts[3] = {"Deformations", "Depths", "Frames"};
 constexpr std::size_t kPartColumns[3] = {9, 3, 7};
 constexpr Column kTable[] = {{0, 0}, {0, 1}, {1, 0}, {0, 2}, {0, 3}, {1, 1}, {0, 4}, {0, 5}, {0, 6}, {0, 7},
                              {0, 8}, {1, 2}, {2, 0}, {2, 1}, {2, 2}, {2, 3}, {2, 4}, {2, 5}, {2, 6}};
-/// The numbers of the default bump: those of Deformations, Depths and the turn of Frames; and the extent in depth among them.
-constexpr std::size_t kDefaultNumbers = 16, kDefaultDepth = 10;
+/// The numbers of the default bump: those of Deformations, Depths and the turn of Frames, and Subdivisions; and the extent in depth among them.
+constexpr std::size_t kDefaultNumbers = 17, kDefaultDepth = 10, kDefaultSubdivisions = 16;
 constexpr std::size_t kTableColumns = sizeof(kTable) / sizeof(kTable[0]);
 
 /// What rows that a part does not have are.
@@ -284,12 +284,19 @@ std::vector<double> vtkSMAnamorphDeformProxy::DefaultRow(vtkSMProperty* property
         // Frames are of 7 numbers, of which the bump has a turn; nothing else of them is not as in a new one.
         std::vector<double> part(kPartColumns[p], 0);
         const auto begin = this->DefaultBump.begin() + static_cast<std::ptrdiff_t>(first);
-        std::copy_n(begin, std::min(part.size(), kDefaultNumbers - first), part.begin());
+        std::copy_n(begin, std::min(part.size(), kDefaultSubdivisions - first), part.begin());
         if (p > 0 && this->DefaultBump[kDefaultDepth] == 0) return {};
         if (name == kParts[p]) return part;
         if (numbers_of(this, kParts[p]) != part) return {};
     }
     return {};
+}
+
+int vtkSMAnamorphDeformProxy::DefaultSubdivisions() {
+    const std::vector<double> list = numbers_of(this, "Deformations");
+    const bool is_default = !this->DefaultBump.empty() && list.size() == kPartColumns[0] &&
+                            std::equal(list.begin(), list.end(), this->DefaultBump.begin());
+    return is_default ? static_cast<int>(this->DefaultBump[kDefaultSubdivisions]) : 0;
 }
 
 void vtkSMAnamorphDeformProxy::SetDefault(const std::function<void()>& set) {
@@ -330,29 +337,29 @@ void vtkSMAnamorphDeformProxy::FindDefault() {
     if (found.size() == kDefaultNumbers && found[kExtentAt] > 0) this->DefaultBump = found;
 }
 
-/// Another list than the default, or one made of it, has no depth and no turn by it.
+/// Another list than the default, or one made of it, has nothing else by it.
 void vtkSMAnamorphDeformProxy::ForgetDefault() {
-    if (this->DefaultBump.empty() || this->DefaultBump[kDefaultDepth] == 0 || this->Pending->depths ||
-        this->Pending->frames)
-        return;
+    if (this->DefaultBump.empty()) return;
+    const std::vector<double>& bump = this->DefaultBump;
     const std::vector<double> list = numbers_of(this, "Deformations");
-    if (list.size() >= kPartColumns[0]) {
-        std::size_t changed = 0;
-        for (std::size_t i = 0; i < kPartColumns[0]; ++i) changed += list[i] != this->DefaultBump[i];
-        if (list[0] == this->DefaultBump[0] && list[1] == this->DefaultBump[1] &&
-            changed <= kPartColumns[0] / 2)
-            return;
-    }
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < kPartColumns[0]; ++i) changed += i >= list.size() || list[i] != bump[i];
+    const bool stands = list.size() >= 2 && list[0] == bump[0] && list[1] == bump[1];
+    if (stands && changed <= kPartColumns[0] / 2) return;
     const auto is_default = [&](std::size_t part, std::size_t first, std::size_t count) {
         const std::vector<double> rows = numbers_of(this, kParts[part]);
         return rows.size() == kPartColumns[part] &&
                std::equal(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count),
-                          this->DefaultBump.begin() + static_cast<std::ptrdiff_t>(first));
+                          bump.begin() + static_cast<std::ptrdiff_t>(first));
     };
-    if (is_default(1, kPartColumns[0], 3) && is_default(2, kPartColumns[0] + kPartColumns[1], 4)) {
+    const bool set = this->Pending->depths || this->Pending->frames;
+    if (!set && bump[kDefaultDepth] != 0 && is_default(1, kPartColumns[0], 3) &&
+        is_default(2, kPartColumns[0] + kPartColumns[1], 4)) {
         set_numbers(this, "Depths", nullptr, 0);
         set_numbers(this, "Frames", nullptr, 0);
     }
+    vtkSMPropertyHelper subdivisions(this, "Subdivisions");
+    if (subdivisions.GetAsInt() == static_cast<int>(bump[kDefaultSubdivisions])) subdivisions.Set(0);
     this->DefaultBump.clear();
 }
 

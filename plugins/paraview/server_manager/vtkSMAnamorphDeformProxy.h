@@ -72,6 +72,10 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
      */
     std::vector<double> DefaultRow(vtkSMProperty* property);
     /**
+     * What Subdivisions has of it.
+     */
+    int DefaultSubdivisions();
+    /**
      * Calls what sets a property to its default, which is not an edit of it.
      */
     void SetDefault(const std::function<void()>& set);
@@ -124,7 +128,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool ListEdited = false;          ///< Deformations has been written to since
     double Heights[2] = {};           ///< of the handles of the centre and the corner over the plane
     std::unique_ptr<Edits> Pending;   ///< edits since the last update
-    std::vector<double> DefaultBump;  ///< the sixteen numbers of the default that was given last
+    std::vector<double> DefaultBump;  ///< the numbers of the default that was given last
     std::vector<double>
         DraggedRow;  ///< that the server has in place of the selected one; none if it has that
     std::unique_ptr<anamorph_paraview::ViewMouse> Mouse;
