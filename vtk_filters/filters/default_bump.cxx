@@ -17,7 +17,9 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTriangle.h"
 
 namespace anamorph_vtk {
 namespace {
@@ -39,6 +41,7 @@ glm::dvec3 point_of(vtkPointSet* mesh, vtkIdType id) {
 struct Surface {
     vtkSmartPointer<vtkPointSet> mesh;
     std::function<glm::dvec2(vtkIdType)> parameters;
+    bool has_subdivisions = false;
 };
 
 /// The faces of bodies are seen of a mesh; its lines and single points are left as they are.
@@ -48,6 +51,21 @@ vtkSmartPointer<vtkPointSet> faces_of(vtkPointSet* mesh) {
     faces->SetInputData(mesh);
     faces->Update();
     return faces->GetOutput();
+}
+
+template <class Points>
+std::array<glm::dvec3, 2> box_of(const Points& points) {
+    glm::dvec3 least(Bounds::kInfinity), most(-Bounds::kInfinity);
+    for (const glm::dvec3& p : points) {
+        least = glm::min(least, p);
+        most = glm::max(most, p);
+    }
+    return {least, most};
+}
+/// How far along an axis a point is from a box at least; negative inside.
+double apart(const glm::dvec3& least, const glm::dvec3& most, const glm::dvec3& point) {
+    const glm::dvec3 off = glm::max(least - point, point - most);
+    return std::max({off.x, off.y, off.z});
 }
 
 /// A place on a surface, and which side of its cells is the outer one.
@@ -248,16 +266,13 @@ class Search {
         const double wide = width();
         double longest = 0, triangles = 0, other = 0;
         for (const Surface& surface : m_surfaces) {
-            if (!has_polygons_alone(surface.mesh)) other = 1;
+            if (!surface.has_subdivisions) other = 1;
             for_each_surface_cell(surface.mesh, [&](vtkIdType count, const vtkIdType* p) {
                 triangles += static_cast<double>(count - 2);
-                glm::dvec3 least(Bounds::kInfinity), most(-Bounds::kInfinity);
-                for (vtkIdType i = 0; i < count; ++i) {
-                    least = glm::min(least, point_of(surface.mesh, p[i]));
-                    most = glm::max(most, point_of(surface.mesh, p[i]));
-                }
-                const glm::dvec3 apart = glm::max(least - place.point, place.point - most);
-                if (std::max({apart.x, apart.y, apart.z}) <= wide)
+                std::vector<glm::dvec3> corners;
+                for (vtkIdType i = 0; i < count; ++i) corners.push_back(point_of(surface.mesh, p[i]));
+                const auto [least, most] = box_of(corners);
+                if (apart(least, most, place.point) <= wide)
                     longest = std::max(longest, glm::distance(least, most));
             });
         }
@@ -270,20 +285,28 @@ class Search {
         return static_cast<int>(std::clamp(std::min(wanted, most), 0.0, 6.0));
     }
 
-    /// The mean of the normals, by area, of the cells about a place that look to the eye.
+    /// The mean of the normals, by area, of the triangles no farther than `reach` from a place that look to the eye.
     glm::dvec3 normal_at(const Place& place, double reach) const {
         glm::dvec3 sum(0.0);
+        vtkNew<vtkTriangle> triangle;
+        const auto add = [&](const std::array<glm::dvec3, 3>& corners) {
+            const auto [least, most] = box_of(corners);
+            if (!(apart(least, most, place.point) <= reach)) return;
+            for (int k = 0; k < 3; ++k)
+                triangle->GetPoints()->SetPoint(k, &corners[static_cast<std::size_t>(k)].x);
+            double closest[3], coordinates[3], square = 0, shares[3];
+            int part;
+            // What has no area has no normal.
+            if (triangle->EvaluatePosition(&place.point.x, closest, part, coordinates, square, shares) < 0 ||
+                square > reach * reach)
+                return;
+            const glm::dvec3 area = place.turn * glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+            if (glm::dot(area, kToEye) > 0) sum += area;
+        };
         for (const Surface& surface : m_surfaces)
             for_each_surface_cell(surface.mesh, [&](vtkIdType count, const vtkIdType* p) {
                 const auto corner = [&](vtkIdType i) { return point_of(surface.mesh, p[i]); };
-                bool near = false;
-                for (vtkIdType i = 0; i < count && !near; ++i)
-                    near = glm::distance(corner(i), place.point) <= reach;
-                if (!near) return;
-                glm::dvec3 area(0.0);
-                for (vtkIdType i = 1; i + 1 < count; ++i)
-                    area += place.turn * glm::cross(corner(i) - corner(0), corner(i + 1) - corner(0));
-                if (glm::dot(area, kToEye) > 0) sum += area;
+                for (vtkIdType i = 1; i + 1 < count; ++i) add({corner(0), corner(i), corner(i + 1)});
             });
         reduce(&sum.x, 3, vtkCommunicator::SUM_OP);
         const double length = glm::length(sum);
@@ -339,12 +362,15 @@ std::optional<DefaultBump> find_default_bump(const std::vector<std::unique_ptr<D
         if (!meshes[m]) continue;
         if (plane) {
             const vtkSmartPointer<vtkPointSet> faces = faces_of(undeformed[m]);
-            surfaces.push_back(
-                {faces, [faces, plane](vtkIdType i) { return plane->parameters(point_of(faces, i)); }});
+            surfaces.push_back({faces,
+                                [faces, plane](vtkIdType i) { return plane->parameters(point_of(faces, i)); },
+                                has_polygons_alone(undeformed[m])});
         } else {
-            surfaces.push_back({undeformed[m], [of_all = &meshes[m]->parameters()](vtkIdType i) {
+            surfaces.push_back({undeformed[m],
+                                [of_all = &meshes[m]->parameters()](vtkIdType i) {
                                     return (*of_all)[static_cast<std::size_t>(i)];
-                                }});
+                                },
+                                has_polygons_alone(undeformed[m])});
         }
     }
     return Search(std::move(surfaces), plane, controller).find();

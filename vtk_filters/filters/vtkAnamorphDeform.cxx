@@ -590,8 +590,9 @@ void vtkAnamorphDeform::FindDefault() {
             vtkWarningMacro(
                 << "the mesh is coarse: it has " << found->points
                 << " of its points within the extents of the deformation that it gets first, which "
-                   "pulls them out. A finer mesh shows it round, by a higher resolution of its source "
-                   "or from the filter Subdivide, after Extract Surface and Triangulate");
+                   "pulls them out. A finer mesh shows it round, by a higher resolution of its source or, of "
+                   "polygons "
+                   "alone, by Subdivisions");
     });
 }
 
@@ -910,7 +911,7 @@ void vtkAnamorphDeform::Run::tell_missed() const {
     vtkWarningWithObjectMacro(
         &filter, << "the mesh has no points within the extents of deformations " << missed
                  << " (the first is 1), which lie between its points and show little or nothing: a finer "
-                    "mesh shows them, by a higher resolution of its source or from the filter Subdivide");
+                    "mesh shows them, by a higher resolution of its source or, of polygons, by Subdivisions");
 }
 
 void vtkAnamorphDeform::Run::tell_folds(const DeformedMesh::Jacobian& least) {

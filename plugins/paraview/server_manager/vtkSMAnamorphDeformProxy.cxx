@@ -181,7 +181,7 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     if (is_one_of(name, {"ImportFile", "ExportFile"})) this->FilesPending = true;
     // Where rows are set anew, so are their depths: the server then has those of the rows that there are.
     if (is_one_of(name, {"Deformations"})) {
-        this->ForgetDefault();
+        this->ForgetDefault(true);
         this->Superclass::SetPropertyModifiedFlag("Depths", 1);
         this->Superclass::SetPropertyModifiedFlag("Frames", 1);
         this->ListEdited = true;
@@ -192,6 +192,7 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
         // Rows may be set number by number.
         if (numbers_of(this, "Bumps").size() % kTableColumns != 0) return;
         this->SplitBumps();
+        this->ForgetDefault(false);
         name = "Deformations";
     }
     if (is_one_of(name,
@@ -337,15 +338,20 @@ void vtkSMAnamorphDeformProxy::FindDefault() {
     if (found.size() == kDefaultNumbers && found[kExtentAt] > 0) this->DefaultBump = found;
 }
 
-/// Another list than the default, or one made of it, has nothing else by it.
-void vtkSMAnamorphDeformProxy::ForgetDefault() {
+/// Another list than the default, or one made of it, has nothing else by it. alone: without depths, of which older scripts know nothing, so
+/// that a bump that is elsewhere is another.
+void vtkSMAnamorphDeformProxy::ForgetDefault(bool alone) {
     if (this->DefaultBump.empty()) return;
-    const std::vector<double>& bump = this->DefaultBump;
+    std::vector<double>& bump = this->DefaultBump;
     const std::vector<double> list = numbers_of(this, "Deformations");
     std::size_t changed = 0;
-    for (std::size_t i = 0; i < kPartColumns[0]; ++i) changed += i >= list.size() || list[i] != bump[i];
-    const bool stands = list.size() >= 2 && list[0] == bump[0] && list[1] == bump[1];
-    if (stands && changed <= kPartColumns[0] / 2) return;
+    const bool whole = list.size() >= kPartColumns[0];
+    for (std::size_t i = 0; whole && i < kPartColumns[0]; ++i) changed += list[i] != bump[i];
+    const bool stands = whole && list[0] == bump[0] && list[1] == bump[1];
+    if (whole && (stands || !alone) && changed <= kPartColumns[0] / 2) {
+        std::copy_n(list.begin(), kPartColumns[0], bump.begin());  // the next edit is one of this
+        return;
+    }
     const auto is_default = [&](std::size_t part, std::size_t first, std::size_t count) {
         const std::vector<double> rows = numbers_of(this, kParts[part]);
         return rows.size() == kPartColumns[part] &&

@@ -18,7 +18,7 @@
  * row that is removed, moved or added takes all of its own along. What is set of the parts is shown in the table, and the other way round.
  *
  * A new list begins with a bump that shows on the input, which on closed surfaces has rows of Depths and Frames. A script that then gives another list
- * of Deformations alone, as scripts did before there were the others, gets that list: these rows go.
+ * of Deformations alone, as scripts did before there were the others, gets that list: these rows go, and the subdivisions for it, which go with any other list.
  *
  * Scripts that remove rows from Deformations alone, and do not set Depths or Frames in the same step, lose the rows of these that
  * belong to them.
@@ -107,7 +107,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     void ShowBumps();
     bool TakeAnchor(double* row);
     void FindDefault();
-    void ForgetDefault();
+    void ForgetDefault(bool alone);
     void AnchorSelected();
     void PropertyPushed(vtkObject*, unsigned long, void* name);
     void FreezePlane();
@@ -123,12 +123,13 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
     double UsedPlane[9] = {};
     bool UsedPlaneKnown = false;
-    int UsedMode = 0;                 ///< ParameterMode of the last update
-    std::vector<double> KnownList;    ///< Deformations, as they were sent last
-    bool ListEdited = false;          ///< Deformations has been written to since
-    double Heights[2] = {};           ///< of the handles of the centre and the corner over the plane
-    std::unique_ptr<Edits> Pending;   ///< edits since the last update
-    std::vector<double> DefaultBump;  ///< the numbers of the default that was given last
+    int UsedMode = 0;                ///< ParameterMode of the last update
+    std::vector<double> KnownList;   ///< Deformations, as they were sent last
+    bool ListEdited = false;         ///< Deformations has been written to since
+    double Heights[2] = {};          ///< of the handles of the centre and the corner over the plane
+    std::unique_ptr<Edits> Pending;  ///< edits since the last update
+    std::vector<double>
+        DefaultBump;  ///< the numbers of the default that was given last, as it was edited since
     std::vector<double>
         DraggedRow;  ///< that the server has in place of the selected one; none if it has that
     std::unique_ptr<anamorph_paraview::ViewMouse> Mouse;
