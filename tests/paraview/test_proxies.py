@@ -57,8 +57,9 @@ FEW = {"AnamorphBlendShapeReader": (2, 1, 4), "AnamorphBlendShapeWriter": (3, 2,
        "AnamorphSplatReader": (0, 0, 1)}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
-# A panel shows a slider for what has two ends, of which none can be dragged over so much. Ends beyond this are left to the filter.
-FAR = 1e5
+# A panel shows a slider, of a hundred steps, for what has two ends: of farther ones no step would be of use. Ends beyond this are left to the filter, and
+# the panel shows a field.
+FAR = 720
 
 
 def proxies():

@@ -183,7 +183,7 @@ def check_other_blocks(rank, ranks):
 
 
 def check_picks(rank, ranks):
-    """What a line first meets, what is nearest to a point, and where the selected bump is, all find, whoever has that part of a ball."""
+    """What a line first meets, what is nearest to a point, where the selected bump is, and the first one of a list, all find, whoever has that part of a ball."""
     def deformed_ball(controller):
         ball, deform = vtkSphereSource(), anamorph.vtkAnamorphDeform()
         ball.SetRadius(1)
@@ -225,6 +225,11 @@ def check_picks(rank, ranks):
         assert math.dist(deform.GetSelectedAnchor(), whole.GetSelectedAnchor()) < 0.1, position
         heights.add(deform.GetSelectedHeights()[0])
     assert len(heights) == 4 and min(heights) > 1
+    # The first bump of a list, too: on every rank, wherever the surface is met.
+    for each in (deform, whole):
+        each.FindDefault()
+    assert math.dist(deform.GetDefaultDeformation(), whole.GetDefaultDeformation()) < 1e-6, deform.GetDefaultDeformation()
+    assert min(whole.GetDefaultDeformation()[:7]) > 0.1
 
 
 def errors_of(bake):
