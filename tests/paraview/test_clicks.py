@@ -20,6 +20,11 @@ def drive(shown):
     shown.click(.55, -.12)
     shown.wait_for(lambda: shown.state()["selected"] == 1)
     shown.wait_for(lambda: is_near(shown.state()["places"]["SelectedCenter"], (.4, 0, math.sqrt(.84) + .3)))
+    # Which is one step of undo, the handles too, and of redo.
+    shown.press("z")
+    shown.wait_for(lambda: shown.state()["selected"] == 0 and is_near(shown.state()["places"]["SelectedCenter"], (-.4, 0)))
+    shown.press("y")
+    shown.wait_for(lambda: shown.state()["selected"] == 1 and is_near(shown.state()["places"]["SelectedCenter"], (.4, 0, math.sqrt(.84) + .3)))
     shown.click(-.55, -.12)
     shown.wait_for(lambda: shown.state()["selected"] == 0)
     # Nothing is there, and nothing beside the surface.

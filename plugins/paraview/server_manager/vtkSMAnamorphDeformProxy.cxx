@@ -687,10 +687,14 @@ void vtkSMAnamorphDeformProxy::SelectBump(int position) {
     if (position == vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt()) return;
     {
         SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this);
-        vtkSMPropertyHelper(this, "SelectedDeformation").Set(position);
-        this->UpdateVTKObjects();
         const WhileHeld step(this->InStep);
+        // The server has it before the properties do, so that a click is one step of undo.
+        vtkClientServerStream stream;
+        stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "SetSelectedDeformation" << position
+               << vtkClientServerStream::End;
+        this->ExecuteStream(stream);
         this->Find("FindSelected");
+        vtkSMPropertyHelper(this, "SelectedDeformation").Set(position);
         if (this->UsedMode != 0) this->TakeUsedPlane();  // that at the bump
         this->TakeHeights();
         *this->Pending = Edits();
