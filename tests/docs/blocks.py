@@ -121,6 +121,7 @@ OTHERS = [
     Other("python", "import vtkAnamorphDeform\n", "vtk", "deform"),
     Other("python", "deform.SetDepth(", "vtk", "depths"),
     Other("python", "deform.AnchorDeformation(", "vtk", "anchor"),
+    Other("python", "deform.AddDefaultDeformation(", "vtk", "first bump"),
     Other("python", "import vtkAnamorphDeformImage\n", "vtk", "image"),
     Other("python", "import vtkAnamorphNonlinearTexture\n", "vtk", "bent"),
     Other("python", "import vtkAnamorphBlendShapeWriter\n", "vtk", "writer"),

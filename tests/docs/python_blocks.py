@@ -7,7 +7,7 @@ import numpy as np
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture,
                                          vtkWindowToImageFilter)
@@ -68,6 +68,14 @@ def check_deform():
     deform.Update()
     assert deform.GetDepth(0)[1] == 0.5 and deform.GetDeformationName(0) == "left brow"
     assert abs(points(deform.GetOutput())[:, 2].max() - 1 - np.exp(-4)) < 1e-3, points(deform.GetOutput()).max(0)
+    # A bump of its own on a box, out of its corner and round, of a mesh that is finer than that takes.
+    box = vtkCubeSource()
+    deform = type(deform)()
+    deform.SetInputConnection(box.GetOutputPort())
+    run("first bump", {"deform": deform})
+    deform.Update()
+    assert deform.GetNumberOfDeformations() == 1 and deform.GetOutput().GetNumberOfPolys() == 12 * 4**5
+    assert np.allclose(points(deform.GetOutput()).max(0), 0.6, atol=1e-3), points(deform.GetOutput()).max(0)
 
 
 def check_image():
