@@ -169,4 +169,4 @@ checks = {"start": check_start, "deform": check_deform, "image": check_image, "b
           "project": check_project, "shader": check_shader, "view": check_view, "mapper": check_mapper}
 for check in checks.values():
     check()
-assert set(TEXT) == {*checks, "depths", "anchor", "labels", "textures"}, TEXT.keys()
+assert set(TEXT) == {*checks, "depths", "anchor", "first bump", "labels", "mosaics", "textures"}, TEXT.keys()
