@@ -71,8 +71,8 @@ class Screen:
             self.move(*(a + (b - a) * i / steps for a, b in zip(start, end)))
         self.button(False)
 
-    def close_dialog(self):
-        """Presses Escape in the window that is on top, if it is none of the program's main ones."""
+    def focus_top(self):
+        """Lets the window that is on top have the keys."""
         parent, children, count = ctypes.c_ulong(), ctypes.POINTER(ctypes.c_ulong)(), ctypes.c_uint()
         root = ctypes.c_ulong()
         self.x11.XQueryTree(self.display, self.root, ctypes.byref(root), ctypes.byref(parent), ctypes.byref(children),
@@ -80,6 +80,10 @@ class Screen:
         self.x11.XSetInputFocus(self.display, ctypes.c_ulong(children[count.value - 1]), 1, ctypes.c_ulong(0))
         self.x11.XSync(self.display, 0)
         time.sleep(0.5)
+
+    def close_dialog(self):
+        """Presses Escape in the window that is on top, if it is none of the program's main ones."""
+        self.focus_top()
         escape = self.x11.XKeysymToKeycode(self.display, ctypes.c_ulong(0xff1b))
         for down in (1, 0):
             self.test.XTestFakeKeyEvent(self.display, escape, down, ctypes.c_ulong(0))

@@ -72,7 +72,7 @@ class Shown:
         from screen_events import Screen
         self.folder = folder
         self.server = None
-        where = []
+        where = os.environ.get("ANAMORPH_ARGUMENTS", "").split()
         if os.environ.get("ANAMORPH_RANKS"):
             self.server = subprocess.Popen(["mpiexec", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", os.environ["ANAMORPH_RANKS"],
                                             "pvserver", "--server-port=0"], stdout=subprocess.PIPE, text=True)
@@ -85,7 +85,7 @@ class Shown:
         """Waits for the window, and finds its view."""
         self.wait_for(lambda: os.path.exists(self.folder + "/state"))
         time.sleep(6)  # panels are made after the script, and the welcome is shown
-        if not self.server:
+        if not self.server and "--disable-registry" not in self.program.args:
             self.screen.close_dialog()
         self.left, top, right, self.bottom = view_on(self.screen.picture())
         size = self.state()["size"]
@@ -164,9 +164,9 @@ class Shown:
 
 def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolution=64, PhiResolution=65)",
         settings="Deformations=[0, 0, .5, .5, 0, 0, .5, 0, 1], Depths=[0, 0, 1]", position="[0, -7, .3]", focus="[0, 0, .3]",
-        up="[0, 0, 1]", script=SCRIPT, ranks=0):
+        up="[0, 0, 1]", script=SCRIPT, ranks=0, arguments=()):
     """Runs `drive` of a window in a display of its own; `file` is the test, which calls this again there. `script` shows the Deform, or
-    something else. With `ranks` the window is the client of a server of so many, and both have the plugin by PV_PLUGIN_PATH."""
+    something else; `arguments` are more of the program's. With `ranks` the window is the client of a server of so many, and both have the plugin by PV_PLUGIN_PATH."""
     if len(sys.argv) > 1:
         shown = Shown(sys.argv[1])
         try:
@@ -180,7 +180,8 @@ def run(file, number, drive, auto_apply=1, surface="Sphere(Radius=1, ThetaResolu
         with open(folder + "/script.py", "w") as file_:
             file_.write(script.format(folder=folder, auto_apply=auto_apply, surface=surface, settings=settings, position=position,
                                       focus=focus, up=up))
-        environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder}
+        environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder,
+                       "ANAMORPH_ARGUMENTS": " ".join(arguments)}
         if ranks:
             environment.update(ANAMORPH_RANKS=str(ranks), PV_PLUGIN_PATH=os.path.dirname(os.environ["ANAMORPH_PLUGIN"]))
         done = subprocess.run([*xvfb_run(number), sys.executable, file, folder], env=environment, capture_output=True, text=True,

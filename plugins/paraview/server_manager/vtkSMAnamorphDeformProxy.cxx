@@ -12,6 +12,7 @@
 #include "session_views.h"
 #include "vtkClientServerStream.h"
 #include "vtkCommand.h"
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVDataInformation.h"
 #include "vtkRenderer.h"
@@ -648,11 +649,15 @@ void vtkSMAnamorphDeformProxy::ViewClicked(vtkSMProxy* proxy, double x, double y
     vtkClientServerStream stream;
     stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "PickOnLine";
     vtkRenderer* renderer = view->GetRenderer();
+    Point away{};  // from the eye
     for (const double depth : {0.0, 1.0}) {
         renderer->SetDisplayPoint(x, y, depth);
         renderer->DisplayToWorld();
         const double* const world = renderer->GetWorldPoint();
-        for (int c = 0; c < 3; ++c) stream << world[c] / world[3];
+        for (unsigned int c = 0; c < 3; ++c) {
+            stream << world[c] / world[3];
+            away[c] = world[c] / world[3] - away[c];
+        }
     }
     stream << vtkClientServerStream::End;
     this->ExecuteStream(stream);
@@ -660,7 +665,7 @@ void vtkSMAnamorphDeformProxy::ViewClicked(vtkSMProxy* proxy, double x, double y
     const std::vector<double> place = numbers_of(this, "PickedParameters");
     if (place.size() != 4 || place[3] == 0) return;
     if (control) {
-        this->AddBump(place[0], place[1], place[2]);
+        this->AddBump(place[0], place[1], place[2], away);
     } else if (const int bump = this->FindBump(place[0], place[1]); bump >= 0) {
         this->SelectBump(bump);
     }
@@ -704,13 +709,28 @@ void vtkSMAnamorphDeformProxy::SelectBump(int position) {
     draw_views(this);
 }
 
-/// A bump of the size of the selected one, or of a new list's, becomes the selected one.
-void vtkSMAnamorphDeformProxy::AddBump(double u, double v, double w) {
+namespace {
+
+/// How far V of a row of the table goes along the third direction of its own frame: what of the surface's normal, as its cells turn, an anchored bump has.
+double along_own_normal(const Frame& plane, const double* row) {
+    double turn[3][3], sum = 0;
+    vtkMath::QuaternionToMatrix3x3(row + 12, turn);
+    for (std::size_t k = 0; k < 3; ++k) sum += turn[k][2] * vtkMath::Dot(row + 6, plane.axes[k].data());
+    return sum;
+}
+
+}  // namespace
+
+/// A bump of the size of the selected one, or of a new list's, becomes the selected one. It stands out of the surface, or into it, as the
+/// selected one does if that is anchored, too, and the first one out; `away` is from the eye.
+void vtkSMAnamorphDeformProxy::AddBump(double u, double v, double w, const std::array<double, 3>& away) {
     {
         SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this);
         std::vector<double> table = numbers_of(this, "Bumps");
         const std::size_t rows = table.size() / kTableColumns;
         const int selected = vtkSMPropertyHelper(this, "SelectedDeformation").GetAsInt();
+        const std::optional<Frame> plane = frame_of(this);
+        std::optional<double> out;  // of the one that it is like
         if (rows == 0) {
             this->GetProperty("Deformations")->ResetToDomainDefaults();
             table = numbers_of(this, "Bumps");
@@ -721,6 +741,8 @@ void vtkSMAnamorphDeformProxy::AddBump(double u, double v, double w) {
                 table.begin() + static_cast<std::ptrdiff_t>(like * kTableColumns),
                 table.begin() + static_cast<std::ptrdiff_t>((like + 1) * kTableColumns));
             table.insert(table.end(), row.begin(), row.end());
+            constexpr std::size_t kExtentW = 5;
+            if (plane && row[kExtentW] != 0) out = along_own_normal(*plane, row.data());
         }
         double* const added = table.data() + rows * kTableColumns;
         added[0] = u, added[1] = v;
@@ -751,6 +773,10 @@ void vtkSMAnamorphDeformProxy::AddBump(double u, double v, double w) {
             stream << vtkClientServerStream::End;
             this->ExecuteStream(stream);
             this->TakeAnchor(added);
+            const bool turned = rows == 0 ? vtkMath::Dot(added + 6, away.data()) > 0
+                                          : out && plane && *out * along_own_normal(*plane, added) < 0;
+            if (turned)
+                for (std::size_t c = 6; c < 9; ++c) added[c] = -added[c];
         }
         set_numbers(this, "Bumps", table.data(), table.size());
         vtkSMPropertyHelper(this, "SelectedDeformation").Set(static_cast<int>(rows));

@@ -42,6 +42,7 @@
 #include "AnamorphServerManagerModule.h"  // for the export macro
 #include "vtkSMAnamorphSourceProxy.h"
 
+#include <array>       // for points
 #include <functional>  // for defaults
 #include <memory>      // for the edits and the mouse
 #include <vector>      // for lists
@@ -116,7 +117,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamor
     bool IsActive();
     int FindBump(double u, double v);
     void SelectBump(int position);
-    void AddBump(double u, double v, double w);
+    void AddBump(double u, double v, double w, const std::array<double, 3>& away);
 
     bool InStep = true;         ///< one side follows the other, or not all properties are there yet
     bool HandlesPut = false;    ///< SelectedCenter has been written to
