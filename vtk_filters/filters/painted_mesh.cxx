@@ -2,18 +2,43 @@
 #include "painted_mesh.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 namespace anamorph_vtk {
+namespace {
+
+/// A number's bits, with one zero: what is no number equals itself.
+std::uint64_t bits_of(double number) {
+    return std::bit_cast<std::uint64_t>(number + 0.0);
+}
+
+}  // namespace
+
+bool PaintedMesh::Key::operator==(const Key& other) const {
+    return from == other.from && std::equal(at.begin(), at.end(), other.at.begin(),
+                                            [](double a, double b) { return bits_of(a) == bits_of(b); });
+}
+
+std::size_t PaintedMesh::Hash::operator()(const Key& key) const {
+    std::uint64_t sum = 0;
+    // Each step spreads what came before over all bits.
+    const auto add = [&sum](std::uint64_t more) {
+        sum = (sum ^ more) * 0x9E3779B97F4A7C15u;
+        sum ^= sum >> 32;
+    };
+    for (const vtkIdType id : key.from) add(static_cast<std::uint64_t>(id));
+    for (const double number : key.at) add(bits_of(number));
+    return static_cast<std::size_t>(sum);
+}
 
 PaintedMesh::PaintedMesh(vtkPolyData* scene, const anamorph::Size* size)
     : m_scene(scene), m_size(size), m_mesh(vtkSmartPointer<vtkPolyData>::New()) {
@@ -39,7 +64,8 @@ PaintedMesh::PaintedMesh(vtkPolyData* scene, const anamorph::Size* size)
 vtkIdType PaintedMesh::point_of(const anamorph::PaintedCorner& corner, vtkIdType cell,
                                 const std::array<vtkIdType, 3>& corners) {
     Key key{{-1, -1, -1}, {corner.point.x, corner.point.y, corner.point.z, corner.texel.x, corner.texel.y}};
-    vtkNew<vtkIdList> ids;
+    vtkIdList* ids = m_ids;
+    ids->Reset();
     std::array<double, 3> weights{};
     for (int i = 0; i < 3; ++i) {
         if (corner.weights[i] == 0) continue;

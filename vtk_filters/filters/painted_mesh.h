@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 #include "anamorph/geometry/size.h"
 #include "anamorph/projector/projected_triangles.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
@@ -39,14 +41,18 @@ class PaintedMesh {
     struct Key {
         std::array<vtkIdType, 3> from;
         std::array<double, 5> at;
-        auto operator<=>(const Key&) const = default;
+        bool operator==(const Key&) const;
+    };
+    struct Hash {
+        std::size_t operator()(const Key& key) const;
     };
 
     vtkPolyData* m_scene;
     const anamorph::Size* m_size;
     vtkSmartPointer<vtkPolyData> m_mesh;
     vtkSmartPointer<vtkDoubleArray> m_texels;
-    std::map<Key, vtkIdType> m_points;
+    std::unordered_map<Key, vtkIdType, Hash> m_points;
+    vtkNew<vtkIdList> m_ids;  ///< those of a point's corners
 };
 
 }  // namespace anamorph_vtk

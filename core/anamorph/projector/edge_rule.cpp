@@ -90,18 +90,24 @@ struct RayTriangle {
     }
 };
 
+SecondForms forms_of(const IntervalJet& jet) {
+    const Interval ee = jet.c[3] * 2.0, ef = jet.c[4], ff = jet.c[5] * 2.0;
+    const auto middle = [](const Interval& i) { return 0.5 * i.lo + 0.5 * i.hi; };
+    const auto radius = [&](const Interval& i) { return std::max(i.hi - middle(i), middle(i) - i.lo); };
+    return {middle(ee), middle(ef), middle(ff), radius(ee), radius(ef), radius(ff)};
+}
+
 /// Eq. (2) for one coordinate: its form at the corners, and what it may be off anywhere.
 struct Bend {
     double e, f, g;  ///< twice the form of e, f and their difference
     double off;
+
+    explicit Bend(const SecondForms& of)
+        : e(of.ee),
+          f(of.ff),
+          g(of.ee + of.ff - 2 * of.ef),
+          off((of.off_ee + 2 * of.off_ef + of.off_ff) / 8) {}
 };
-Bend bend_of(const IntervalJet& jet) {
-    const Interval ee = jet.c[3] * 2.0, ef = jet.c[4], ff = jet.c[5] * 2.0;
-    const auto middle = [](const Interval& i) { return 0.5 * i.lo + 0.5 * i.hi; };
-    const auto radius = [&](const Interval& i) { return std::max(i.hi - middle(i), middle(i) - i.lo); };
-    return {middle(ee), middle(ff), middle(ee) + middle(ff) - 2 * middle(ef),
-            (radius(ee) + 2 * radius(ef) + radius(ff)) / 8};
-}
 
 /// The most of (l_0 l_1 e + l_0 l_2 f + l_1 l_2 g) / 2 and of its negative over all weights: at the middle of a side, or
 /// where its derivatives are 0.
@@ -117,8 +123,8 @@ double most_within(double e, double f, double g) {
 }
 
 /// A bound of what interpolation is off across a triangle, by eq. (2).
-double bound_of(const Point<IntervalJet>& p) {
-    const Bend x = bend_of(p.x), y = bend_of(p.y);
+double bound_of(const Point<SecondForms>& forms) {
+    const Bend x(forms.x), y(forms.y);
     // A vector is no longer than its parts in directions that are 22.5 degrees apart say.
     constexpr int kDirections = 8;
     static const auto directions = [] {
@@ -181,12 +187,18 @@ Reading read(const Chart& chart, const RayTriangle& triangle, const Branch& bran
     reading.outside = one_branch && ((!chart.closed() && beside(p.x.c[0], chart.width())) ||
                                      beside(p.y.c[0], chart.height()));
     const bool seen = all_seen || chart.sees(range, branch.piece).lo > 0;
-    reading.bound = bound_of(p);
+    reading.bound = bound_of({forms_of(p.x), forms_of(p.y)});
     reading.smooth = one_branch && seen && std::isfinite(reading.bound);
     return reading;
 }
 
 }  // namespace
+
+EdgeRule::EdgeRule(const Projector& projector, double tol, double smallest, bool single)
+    : m_projector(projector), m_tol(tol), m_smallest(smallest), m_on_plane(single ? 0x1p-20 : 0x1p-40) {
+    if (projector.panorama().pieces().size() == 1)
+        m_cells = std::make_unique<const DerivativeCells>(projector.panorama());
+}
 
 bool EdgeRule::in_order(const glm::dvec3& a, const glm::dvec3& b) {
     if (a.x != b.x) return a.x < b.x;
@@ -203,7 +215,7 @@ double EdgeRule::crossing(const glm::dvec3& a, const glm::dvec3& b) const {
         return clear && (at_a < 0) != (at_b < 0) ? at_a / (at_a - at_b) : -1;
     };
     if (chart.pieces().size() == 1) {
-        if (chart.counted() != Counted::azimuth) return -1;
+        if (chart.counted() != Counted::azimuth || (a.x < 0) == (b.x < 0)) return -1;
         const double t = root(a.x, b.x);
         return t > 0 && t < 1 && a.z + t * (b.z - a.z) < 0 ? t : -1;
     }
@@ -312,14 +324,32 @@ bool EdgeRule::is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const 
     return is_within && off > 1.001 * most + rounding && off < 0.1 * chart.width();
 }
 
+EdgeFinding EdgeRule::judge_by_cells(const glm::dvec3& a, const glm::dvec3& b) const {
+    if (!m_cells) return {};
+    // Of an edge, where f is 0, eq. (2) is the form of e over 8.
+    const auto bend = m_cells->over(std::array{a, b}, 0.5 * (a + b), b - a);
+    if (!bend) return {};
+    const auto length = [](double x, double y) { return std::sqrt(x * x + y * y) * kHair; };
+    const double middle = length(bend->x.ee, bend->y.ee) / 8,
+                 off = length(bend->x.off_ee, bend->y.off_ee) / 8;
+    if (middle + off <= kShare * m_tol) return {EdgeVerdict::bounded, middle + off};
+    // Bent by more than that everywhere, no bound of it is any less. What may be tiny (judge_rays) is not settled here.
+    const glm::dvec3 across = glm::cross(a, b);
+    const double seen = 2 * std::sqrt(glm::dot(across, across) / (glm::dot(a, a) * glm::dot(b, b))) *
+                        m_projector.panorama().pixels_per_radian();
+    return {middle - off > kShare * m_tol * kHair * kHair && seen > m_tol ? EdgeVerdict::split
+                                                                          : EdgeVerdict::hopeless};
+}
+
 EdgeFinding EdgeRule::judge(const glm::dvec3& a, const glm::dvec3& b) const {
     const glm::dvec3 from = m_projector.ray(a), to = m_projector.ray(b);
     const double edge = glm::length(to - from);
     if (!(edge < HUGE_VAL)) return {};
     const double at = crossing(from, to);
     if (at > 0) return edge > m_smallest ? EdgeFinding{EdgeVerdict::cut, 0, at} : EdgeFinding{};
-    EdgeFinding found{EdgeVerdict::split};
-    if (!is_off_in_middle(from, to)) {
+    EdgeFinding found = judge_by_cells(from, to);
+    if (found.verdict == EdgeVerdict::hopeless && is_off_in_middle(from, to)) found = {EdgeVerdict::split};
+    if (found.verdict == EdgeVerdict::hopeless) {
         const glm::dvec3 middle = 0.5 * (from + to);
         if (m_projector.panorama().pieces().size() > 1)
             found = judge_rays({from, to, from}, branches_of_faces(middle), kShare, kWider);
@@ -334,7 +364,15 @@ EdgeFinding EdgeRule::judge(const glm::dvec3& a, const glm::dvec3& b) const {
 EdgeFinding EdgeRule::judge(const std::array<glm::dvec3, 3>& corners) const {
     std::array<glm::dvec3, 3> rays;
     for (std::size_t i = 0; i < 3; ++i) rays[i] = m_projector.ray(corners[i]);
-    return judge_rays(rays, std::array{branch_between(rays, middle_of(rays))}, 1, 0);
+    const glm::dvec3 middle = middle_of(rays);
+    if (m_cells) {
+        const RayTriangle triangle(rays);
+        const auto forms =
+            m_cells->over(rays, rays[0] / 3.0 + rays[1] / 3.0 + rays[2] / 3.0, triangle.e, &triangle.f);
+        const double bound = forms ? bound_of(*forms) : HUGE_VAL;
+        if (bound <= m_tol) return {EdgeVerdict::bounded, bound};
+    }
+    return judge_rays(rays, std::array{branch_between(rays, middle)}, 1, 0);
 }
 
 std::optional<glm::dvec3> EdgeRule::axis_in(const std::array<glm::dvec3, 3>& corners) const {

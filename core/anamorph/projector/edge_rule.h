@@ -25,10 +25,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "anamorph/projector/derivative_cells.h"
 #include "anamorph/projector/projector.h"
 
 namespace anamorph {
@@ -56,8 +58,7 @@ class EdgeRule {
   public:
     /// `tol`: the tolerance in texels. Edges no longer than `smallest` (units of the scene) are not split. `single`: are points
     /// rounded to float?
-    EdgeRule(const Projector& projector, double tol, double smallest, bool single = false)
-        : m_projector(projector), m_tol(tol), m_smallest(smallest), m_on_plane(single ? 0x1p-20 : 0x1p-40) {}
+    EdgeRule(const Projector& projector, double tol, double smallest, bool single = false);
 
     /// Judges the edge from a to b. For the same bits from both sides, callers pass the ends in the order of in_order().
     EdgeFinding judge(const glm::dvec3& a, const glm::dvec3& b) const;
@@ -88,6 +89,8 @@ class EdgeRule {
     /// Is the texel of an edge's middle farther from what interpolation gives than an edge may be off? It is then split, as it would
     /// be by its bound, which is no less. False where that is not clear.
     bool is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const;
+    /// Judges an edge by what is known of its surroundings; hopeless where that does not suffice.
+    EdgeFinding judge_by_cells(const glm::dvec3& a, const glm::dvec3& b) const;
     EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, std::span<const Branch> branches, double share,
                            double wider) const;
 
@@ -98,6 +101,8 @@ class EdgeRule {
 
     const Projector& m_projector;
     double m_tol, m_smallest, m_on_plane;
+    /// What derivatives of a panorama of one piece are; null of others.
+    std::unique_ptr<const DerivativeCells> m_cells;
 };
 
 }  // namespace anamorph

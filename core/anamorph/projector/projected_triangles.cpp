@@ -281,9 +281,10 @@ class Cutting {
         for (std::size_t i = 0; i < 3; ++i) {
             glm::dvec3 r = rays[i];
             const double least = m_rule.on_plane() * glm::length(r);
-            if (azimuth && std::hypot(r.x, r.z) <= least)
+            const bool near = azimuth && std::fabs(r.x) <= least;
+            if (near && std::fabs(r.z) <= least && std::hypot(r.x, r.z) <= least)
                 r = {middle.x * 0x1p-60, r.y, middle.z * 0x1p-60};
-            else if (azimuth && std::fabs(r.x) <= least && r.z < 0)
+            else if (near && r.z < 0)
                 r.x = std::copysign(r.z * 0x1p-100, middle.x);
             piece.corners[i].texel = chart.point(Ray<double>{r.x, r.y, r.z}, on);
             const Point<double>& texel = piece.corners[i].texel;
@@ -316,8 +317,18 @@ class Cutting {
         return distances[border];
     }
 
+    /// Is nothing of a piece beyond a border of the panorama?
+    bool is_within(const PaintedTriangle& piece) const {
+        const double near = on_border();
+        for (int border = 0; border < 4; ++border)
+            for (const PaintedCorner& corner : piece.corners)
+                if (within(border, corner.texel) < -near) return false;
+        return true;
+    }
+
     /// Cuts a piece at the borders of the panorama.
     void clip(const PaintedTriangle& piece) {
+        if (is_within(piece)) return put(piece, Painting::painted);
         Polygon inside(piece.corners.begin(), piece.corners.end());
         std::array<Polygon, 4> beyond;
         for (int border = 0; border < 4; ++border)
