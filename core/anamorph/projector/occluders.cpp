@@ -127,7 +127,9 @@ void Occluders::build(std::vector<Rays>& triangles, std::size_t begin, std::size
 class Occluders::Region {
   public:
     /// About the rays of points from a centre.
-    explicit Region(std::span<const glm::dvec3> points, const glm::dvec3& centre = glm::dvec3(0.0)) {
+    explicit Region(std::span<const glm::dvec3> points, const glm::dvec3& centre = glm::dvec3(0.0),
+                    double hair = kHair)
+        : m_hair(hair) {
         glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
         double size = 0;
         for (const glm::dvec3& point : points) {
@@ -138,8 +140,8 @@ class Occluders::Region {
         }
         // Where t r is in a node's box, t low <= node.high and t (-high) <= -node.low.
         for (int d = 0; d < 3; ++d) {
-            bound(low[d] - kHair * size, 3 + d, 1);
-            bound(-(high[d] + kHair * size), d, -1);
+            bound(low[d] - m_hair * size, 3 + d, 1);
+            bound(-(high[d] + m_hair * size), d, -1);
         }
     }
     void add(const HalfSpace& half) { m_halves[m_half_count++] = half; }
@@ -158,10 +160,10 @@ class Occluders::Region {
         return true;
     }
 
-  private:
-    /// Shares of lengths that are taken for rounding: that of a few operations, 2^-50, is less.
+    /// The share of lengths that is taken for rounding: that of a few operations, 2^-50, is less.
     static constexpr double kHair = 1e-12;
 
+  private:
     /// t is bounded by one of the six numbers of a box, times a factor.
     struct Bound {
         int number;
@@ -174,19 +176,20 @@ class Occluders::Region {
         else
             m_lower[m_lower_count++] = {number, k < 0 ? side / k : -side * HUGE_VAL};
     }
-    static bool reaches(const HalfSpace& half, const Node& node) {
+    bool reaches(const HalfSpace& half, const Node& node) const {
         double most = half.offset, size = std::fabs(half.offset);
         for (int d = 0; d < 3; ++d) {
             const double low = half.normal[d] * node.low[d], high = half.normal[d] * node.high[d];
             most += std::max(low, high);
             size += std::max(std::fabs(low), std::fabs(high));
         }
-        return !(most < -kHair * size);
+        return !(most < -m_hair * size);
     }
 
     std::array<Bound, 6> m_lower{}, m_upper{};
     std::array<HalfSpace, 5> m_halves{};
     std::size_t m_lower_count = 0, m_upper_count = 0, m_half_count = 0;
+    double m_hair;  ///< shares of lengths that are taken for rounding
 };
 
 template <class Body>
@@ -210,9 +213,9 @@ void Occluders::for_each_in(const Region& region, const Body& body) const {
 }
 
 /// The tetrahedron from the centre to a triangle.
-Occluders::Region Occluders::region_before(const Rays& r) {
+Occluders::Region Occluders::region_before(const Rays& r, double hair) {
     const double side = triple(r) >= 0 ? 1 : -1;
-    Region region(r);
+    Region region(r, glm::dvec3(0.0), std::max(hair, Region::kHair));
     for (std::size_t k = 0; k < 3; ++k) region.add({glm::cross(r[k], r[(k + 1) % 3]) * side, 0});
     const glm::dvec3 n = glm::cross(r[1] - r[0], r[2] - r[0]) * side;
     region.add({-n, glm::dot(n, r[0])});
@@ -259,13 +262,13 @@ bool Occluders::hides(const glm::dvec3& point, std::span<const std::int32_t> tri
                        [&](std::int32_t i) { return m_occluders[static_cast<std::size_t>(i)].hides(r); });
 }
 
-bool Occluders::may_hide(const Rays& triangle) const {
+bool Occluders::may_hide(const Rays& triangle, double hair) const {
     const Rays r{triangle[0] - m_centre, triangle[1] - m_centre, triangle[2] - m_centre};
     bool found = false;
-    for_each_in(region_before(r), [&](std::int32_t i) {
+    for_each_in(region_before(r, hair), [&](std::int32_t i) {
         const Occluder& o = m_occluders[static_cast<std::size_t>(i)];
         found = false;
-        for (const glm::dvec3& corner : r) found = found || o.value(3, corner) > 0;
+        for (const glm::dvec3& corner : r) found = found || o.value(3, corner) > -hair * glm::length(corner);
         return !found;
     });
     return found;

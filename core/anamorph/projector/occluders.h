@@ -58,8 +58,9 @@ class Occluders {
     /// Is a point hidden by one of these triangles? Where they are what find_before() finds, by any at all, but for triangles whose
     /// shape is that of rounding.
     bool hides(const glm::dvec3& point, std::span<const std::int32_t> triangles) const;
-    /// May something hide a part of a triangle? False if nothing does.
-    bool may_hide(const std::array<glm::dvec3, 3>& triangle) const;
+    /// May something hide a part of a triangle? False if nothing does, nor anything of a triangle whose points are off its own by a
+    /// share `hair` of their distance from the centre.
+    bool may_hide(const std::array<glm::dvec3, 3>& triangle, double hair = 0) const;
     /// Finds the first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
     /// Stretches shorter than `hair` do not count.
     double border(const glm::dvec3& a, const glm::dvec3& b, double hair, const ShadowScale& scale) const;
@@ -103,7 +104,7 @@ class Occluders {
     /// Calls `body` with the positions of the occluders that may be in a region, until `body` returns false.
     template <class Body>
     void for_each_in(const Region& region, const Body& body) const;
-    static Region region_before(const std::array<glm::dvec3, 3>& rays);
+    static Region region_before(const std::array<glm::dvec3, 3>& rays, double hair = 0);
     static Region region_before(const glm::dvec3& a, const glm::dvec3& b);
 
     friend class ShadowParts;

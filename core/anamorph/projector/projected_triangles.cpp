@@ -24,7 +24,8 @@ bool wants_split(const EdgeFinding& side) {
 struct SceneTriangle {
     std::array<SceneCorner, 3> corners;
     std::array<EdgeFinding, 3> sides;
-    int depth = 0;  ///< of how many splits it comes
+    int depth = 0;         ///< of how many splits it comes
+    bool shadows = false;  ///< may something hide a part of it?
 };
 
 /// The cutting of one triangle.
@@ -45,9 +46,9 @@ class Cutting {
             put(piece_of(whole.corners), Painting::no_direction);
             return m_counts;
         }
-        m_shadows = m_options.occluders && m_options.occluders->may_hide(triangle);
         const auto& c = whole.corners;
-        push(c, {side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])});
+        const bool shadows = m_options.occluders && m_options.occluders->may_hide(triangle);
+        push(c, {side(c[0], c[1], shadows), side(c[1], c[2], shadows), side(c[2], c[0], shadows)}, shadows);
         while (!m_open.empty()) {
             const SceneTriangle next = m_open.back();
             m_open.pop_back();
@@ -64,13 +65,14 @@ class Cutting {
         return true;
     }
 
-    /// What the rule says of a side. One that is short enough is cut where a shadow begins or ends.
-    EdgeFinding side(const SceneCorner& a, const SceneCorner& b) const {
+    /// What the rule says of a side. One that is short enough is cut where a shadow begins or ends, if there may be some in all
+    /// triangles that it is a side of.
+    EdgeFinding side(const SceneCorner& a, const SceneCorner& b, bool shadows) const {
         const bool ordered = EdgeRule::in_order(a.point, b.point);
         const glm::dvec3 &first = ordered ? a.point : b.point, &last = ordered ? b.point : a.point;
         const EdgeFinding found = m_rule.judge(first, last);
         const double length = glm::length(b.point - a.point);
-        if (!m_shadows || found.verdict != EdgeVerdict::bounded || !(length > 2 * m_options.smallest))
+        if (!shadows || found.verdict != EdgeVerdict::bounded || !(length > 2 * m_options.smallest))
             return found;
         const ShadowScale scale = shadow_scale();
         const double hair =
@@ -91,8 +93,17 @@ class Cutting {
         return 2 * glm::length(b - a) / distance * m_projector.panorama().pixels_per_radian();
     }
 
-    void push(const std::array<SceneCorner, 3>& c, const std::array<EdgeFinding, 3>& sides) {
-        m_open.push_back({c, sides, m_depth + 1});
+    void push(const std::array<SceneCorner, 3>& c, const std::array<EdgeFinding, 3>& sides, bool shadows) {
+        m_open.push_back({c, sides, m_depth + 1, shadows});
+    }
+
+    /// May something hide a part of a triangle, which is part of another one? Of two triangles that share a side one is not to say no
+    /// where parts of that side, which are rounded, have borders of shadows in them: what counts as on a plane is far more than
+    /// their rounding.
+    bool has_shadows(const SceneTriangle& whole, const SceneCorner& a, const SceneCorner& b,
+                     const SceneCorner& c) const {
+        return whole.shadows &&
+               m_options.occluders->may_hide({a.point, b.point, c.point}, 8 * m_rule.on_plane());
     }
 
     glm::dvec3 rounded(const glm::dvec3& p) const { return m_options.single ? glm::dvec3(glm::vec3(p)) : p; }
@@ -142,13 +153,19 @@ class Cutting {
                int splits) {
         count(splits);
         const auto& c = from.corners;
+        const auto shadows = [&](const SceneCorner& a, const SceneCorner& b, const SceneCorner& d) {
+            return has_shadows(from, a, b, d);
+        };
         if (splits == 3) {
             const SceneCorner &p = *middle[0], &q = *middle[1], &r = *middle[2];
-            const EdgeFinding pq = side(p, q), qr = side(q, r), rp = side(r, p);
-            push({c[0], p, r}, {side(c[0], p), rp, side(r, c[0])});
-            push({p, c[1], q}, {side(p, c[1]), side(c[1], q), pq});
-            push({r, q, c[2]}, {qr, side(q, c[2]), side(c[2], r)});
-            push({p, q, r}, {pq, qr, rp});
+            const bool at0 = shadows(c[0], p, r), at1 = shadows(p, c[1], q), at2 = shadows(r, q, c[2]),
+                       within = shadows(p, q, r);
+            const EdgeFinding pq = side(p, q, at1 && within), qr = side(q, r, at2 && within),
+                              rp = side(r, p, at0 && within);
+            push({c[0], p, r}, {side(c[0], p, at0), rp, side(r, c[0], at0)}, at0);
+            push({p, c[1], q}, {side(p, c[1], at1), side(c[1], q, at1), pq}, at1);
+            push({r, q, c[2]}, {qr, side(q, c[2], at2), side(c[2], r, at2)}, at2);
+            push({p, q, r}, {pq, qr, rp}, within);
             return;
         }
         // Turned so that the side from corner 0 to corner 1 is split, and of two, that from 2 to 0.
@@ -157,24 +174,28 @@ class Cutting {
         const SceneCorner &a = c[first], &b = c[(first + 1) % 3], &d = c[(first + 2) % 3],
                           &p = *middle[first];
         const EdgeFinding &bd = from.sides[(first + 1) % 3], &da = from.sides[(first + 2) % 3];
-        const EdgeFinding ap = side(a, p), pb = side(p, b);
         if (splits == 1) {
-            const EdgeFinding pd = side(p, d);
-            push({a, p, d}, {ap, pd, da});
-            push({p, b, d}, {pb, bd, pd});
+            const bool at_a = shadows(a, p, d), at_b = shadows(p, b, d);
+            const EdgeFinding pd = side(p, d, at_a && at_b);
+            push({a, p, d}, {side(a, p, at_a), pd, da}, at_a);
+            push({p, b, d}, {side(p, b, at_b), bd, pd}, at_b);
             return;
         }
         const SceneCorner& r = *middle[(first + 2) % 3];
-        const EdgeFinding ra = side(r, a), dr = side(d, r), pr = side(p, r);
-        push({a, p, r}, {ap, pr, ra});
-        if (glm::length(r.point - b.point) <= glm::length(p.point - d.point)) {
-            const EdgeFinding br = side(b, r);
-            push({p, b, r}, {pb, br, pr});
-            push({b, d, r}, {bd, dr, br});
+        const bool to_b = glm::length(r.point - b.point) <= glm::length(p.point - d.point);
+        const bool at_a = shadows(a, p, r), at_b = to_b ? shadows(p, b, r) : shadows(p, b, d),
+                   at_d = to_b ? shadows(b, d, r) : shadows(p, d, r);
+        const EdgeFinding pr = side(p, r, at_a && (to_b ? at_b : at_d)), pb = side(p, b, at_b),
+                          dr = side(d, r, at_d);
+        push({a, p, r}, {side(a, p, at_a), pr, side(r, a, at_a)}, at_a);
+        if (to_b) {
+            const EdgeFinding br = side(b, r, at_b && at_d);
+            push({p, b, r}, {pb, br, pr}, at_b);
+            push({b, d, r}, {bd, dr, br}, at_d);
         } else {
-            const EdgeFinding pd = side(p, d);
-            push({p, b, d}, {pb, bd, pd});
-            push({p, d, r}, {pd, dr, pr});
+            const EdgeFinding pd = side(p, d, at_b && at_d);
+            push({p, b, d}, {pb, bd, pd}, at_b);
+            push({p, d, r}, {pd, dr, pr}, at_d);
         }
     }
 
@@ -193,9 +214,12 @@ class Cutting {
             if (!(glm::dot(glm::cross(c[(k + 1) % 3].point - c[k].point, m.point - c[k].point), normal) > 0))
                 return false;
         count(2);
-        const EdgeFinding to[] = {side(c[0], m), side(c[1], m), side(c[2], m)};
+        std::array<bool, 3> shadows;
+        for (std::size_t k = 0; k < 3; ++k) shadows[k] = has_shadows(from, c[k], c[(k + 1) % 3], m);
+        std::array<EdgeFinding, 3> to;
+        for (std::size_t k = 0; k < 3; ++k) to[k] = side(c[k], m, shadows[k] && shadows[(k + 2) % 3]);
         for (std::size_t k = 0; k < 3; ++k)
-            push({c[k], c[(k + 1) % 3], m}, {from.sides[k], to[(k + 1) % 3], to[k]});
+            push({c[k], c[(k + 1) % 3], m}, {from.sides[k], to[(k + 1) % 3], to[k]}, shadows[k]);
         return true;
     }
 
@@ -245,7 +269,7 @@ class Cutting {
         if (found.verdict == EdgeVerdict::outside) return put(piece, Painting::outside);
         if (!set_texels(piece, tiny)) return put(piece, Painting::no_direction);
         const ShadowCover cover =
-            m_shadows ? m_options.occluders->cover(points_of(c), shadow_scale()) : ShadowCover{};
+            triangle.shadows ? m_options.occluders->cover(points_of(c), shadow_scale()) : ShadowCover{};
         bool lit = cover.share == ShadowCover::lit;
         if (cover.share == ShadowCover::both) {
             double seen = 0;
@@ -419,7 +443,6 @@ class Cutting {
     /// Halving as often as this takes any side to the rounding of its ends.
     static constexpr int kDeepest = 100;
     int m_depth = -1;
-    bool m_shadows = false;
     PaintedCounts m_counts;
 };
 
