@@ -256,6 +256,35 @@ void Occluders::find_before(std::span<const glm::dvec3> points, std::vector<std:
     });
 }
 
+bool Occluders::find_before(const Rays& triangle, std::size_t most, std::vector<std::int32_t>& found) const {
+    found.clear();
+    const Rays r{triangle[0] - m_centre, triangle[1] - m_centre, triangle[2] - m_centre};
+    const double size = std::max({glm::length(r[0]), glm::length(r[1]), glm::length(r[2])});
+    bool enough = size < HUGE_VAL;
+    if (!enough) return false;
+    for_each_in(region_before(r), [&](std::int32_t i) {
+        const Occluder& o = m_occluders[static_cast<std::size_t>(i)];
+        // A condition that holds in no corner holds nowhere between them, and one that holds in all holds everywhere, by more than
+        // values are rounded.
+        const double hair = Region::kHair * (size + std::fabs(o.depth));
+        bool all = true;
+        for (const std::size_t k : {3, 0, 1, 2}) {
+            const double a = o.value(k, r[0]), b = o.value(k, r[1]), c = o.value(k, r[2]);
+            if (std::max({a, b, c}) < -hair) return true;
+            all = all && std::min({a, b, c}) > hair;
+        }
+        if (all) {
+            enough = true;
+            found.assign(1, i);
+            return false;
+        }
+        enough = found.size() < most;
+        if (enough) found.push_back(i);
+        return enough;
+    });
+    return enough;
+}
+
 bool Occluders::hides(const glm::dvec3& point, std::span<const std::int32_t> triangles) const {
     const glm::dvec3 r = point - m_centre;
     return std::any_of(triangles.begin(), triangles.end(),

@@ -55,6 +55,9 @@ class Occluders {
     /// Finds the triangles that may hide some points, by their positions in occluders(): all that hide one, and the fewer others the
     /// closer together the points are.
     void find_before(std::span<const glm::dvec3> points, std::vector<std::int32_t>& found) const;
+    /// Finds triangles of which one at least hides a point of a triangle wherever any does. False where there are more than `most`.
+    bool find_before(const std::array<glm::dvec3, 3>& triangle, std::size_t most,
+                     std::vector<std::int32_t>& found) const;
     /// Is a point hidden by one of these triangles? Where they are what find_before() finds, by any at all, but for triangles whose
     /// shape is that of rounding.
     bool hides(const glm::dvec3& point, std::span<const std::int32_t> triangles) const;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <optional>
 
 #include "anamorph/error.h"
@@ -21,12 +22,15 @@ constexpr double kMostFade = 1 << 24, kMostMargin = 64;
 struct FlatTriangle {
     std::array<glm::dvec2, 3> corners;
     double twice_area;
+    std::array<double, 3> sides;  ///< their lengths, each opposite of its corner
 
     FlatTriangle(const BakedTriangle& t, const Size& size) {
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = {t.coordinates[i].x * size.width, (1 - t.coordinates[i].y) * size.height};
         const glm::dvec2 p = corners[1] - corners[0], q = corners[2] - corners[0];
         twice_area = p.x * q.y - p.y * q.x;
+        for (std::size_t i = 0; i < 3; ++i)
+            sides[i] = glm::length(corners[(i + 2) % 3] - corners[(i + 1) % 3]);
     }
 
     bool counts() const {
@@ -38,11 +42,39 @@ struct FlatTriangle {
     /// Weights of the corners.
     glm::dvec3 weights(const glm::dvec2& p) const {
         glm::dvec3 w;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec2 a = corners[(i + 1) % 3] - p, b = corners[(i + 2) % 3] - p;
-            w[static_cast<int>(i)] = (a.x * b.y - a.y * b.x) / twice_area;
-        }
+        for (std::size_t i = 0; i < 3; ++i) w[static_cast<int>(i)] = area_from(i, p) / twice_area;
         return w;
+    }
+    /// What twice areas of a side and a point, as far from it as margins are, may be off by: a few roundings of products of such
+    /// lengths.
+    double rounding(double margin) const {
+        const double reach = std::max({sides[0], sides[1], sides[2]}) + 2 * (margin + 1);
+        return 0x1p-48 * reach * reach;
+    }
+    /// Is a point certainly farther away than `margin`? So it is if it is from the line of a side, and on its other side.
+    bool is_beyond(const glm::dvec2& p, double margin, double rounding) const {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double twice = area_from(i, p);
+            if ((twice_area > 0 ? -twice : twice) > margin * sides[i] + rounding) return true;
+        }
+        return false;
+    }
+
+    /// A triangle of points of a plane, given those of the corners, that has what is no farther than `margin` from this one.
+    std::array<glm::dvec3, 3> enlarged(const std::array<glm::dvec3, 3>& points, double margin) const {
+        // A corner's weight falls to -margin over its height, as far from the side that is opposite.
+        const double area = std::fabs(twice_area);
+        glm::dvec3 beyond;
+        for (std::size_t i = 0; i < 3; ++i)
+            beyond[static_cast<int>(i)] = (sides[i] * margin + rounding(margin)) / area + 1e-9;
+        std::array<glm::dvec3, 3> result{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            glm::dvec3 weights = -beyond;
+            weights[static_cast<int>(i)] =
+                1 + beyond[static_cast<int>((i + 1) % 3)] + beyond[static_cast<int>((i + 2) % 3)];
+            result[i] = points[0] * weights.x + points[1] * weights.y + points[2] * weights.z;
+        }
+        return result;
     }
 
     double distance(const glm::dvec2& p) const {
@@ -53,6 +85,13 @@ struct FlatTriangle {
             least = std::min(least, glm::length(p - a - t * along));
         }
         return least;
+    }
+
+  private:
+    /// Twice the area of the side opposite of corner i and a point, turned as the triangle's is where the point is inside.
+    double area_from(std::size_t i, const glm::dvec2& p) const {
+        const glm::dvec2 a = corners[(i + 1) % 3] - p, b = corners[(i + 2) % 3] - p;
+        return a.x * b.y - a.y * b.x;
     }
 };
 
@@ -82,6 +121,40 @@ void read_pixel(const Chart& chart, const float* pixels, int channels, const Poi
                            t * ((1 - s) * at(left, bottom, c) + s * at(right, bottom, c)));
 }
 
+/// What may hide points of the triangles of a mesh, found for a triangle when it is first asked for; several threads may ask at once.
+class HidersOfTriangles {
+  public:
+    /// What may hide a triangle: few triangles, or too many to try them all at every point.
+    struct Found {
+        bool few = false;
+        std::vector<std::int32_t> triangles;
+    };
+
+    explicit HidersOfTriangles(std::size_t count) : m_of(count) {}
+    ~HidersOfTriangles() {
+        for (const auto& found : m_of) delete found.load();
+    }
+    HidersOfTriangles(const HidersOfTriangles&) = delete;
+    HidersOfTriangles& operator=(const HidersOfTriangles&) = delete;
+
+    /// What hides triangle i, whose corners and margin lie in the triangle that `about` gives.
+    template <class About>
+    const Found& of(std::size_t i, const Occluders& occluders, const About& about) {
+        const Found* known = m_of[i].load(std::memory_order_acquire);
+        if (known) return *known;
+        auto found = std::make_unique<Found>();
+        found->few = occluders.find_before(about(), kFew, found->triangles);
+        // Another thread may have been quicker, with the same.
+        if (m_of[i].compare_exchange_strong(known, found.get(), std::memory_order_acq_rel))
+            known = found.release();
+        return *known;
+    }
+
+  private:
+    static constexpr std::size_t kFew = 64;
+    std::vector<std::atomic<const Found*>> m_of;
+};
+
 /// The baking of one texture.
 class Baking {
   public:
@@ -98,6 +171,9 @@ class Baking {
                                     static_cast<std::size_t>(m_end - m_begin) *
                                     static_cast<std::size_t>(m_stride),
                                 0.0F);
+        for (const ThrownPicture& picture : pictures)
+            m_hiders.push_back(picture.occluders ? std::make_unique<HidersOfTriangles>(mesh.size())
+                                                 : nullptr);
         for (std::size_t i = 0; i < mesh.size(); ++i) {
             m_flat.emplace_back(mesh[i], options.size);
             if (!m_flat.back().counts()) continue;
@@ -162,44 +238,44 @@ class Baking {
         const double width = m_options.size.width;
         const auto begin = static_cast<std::int64_t>(std::clamp(low - m_options.margin - 1, 0.0, width));
         const auto end = static_cast<std::int64_t>(std::clamp(high + m_options.margin + 1, 0.0, width));
+        const double rounding = flat.rounding(m_options.margin);
         Texels& texels = state.texels;
         const auto& q = m_mesh[triangle].points;
         for (std::int64_t i = begin; i < end; ++i) {
             char& mine = state.taken[static_cast<std::size_t>(i)];
             if (mine) continue;
             const glm::dvec2 p(static_cast<double>(i) + 0.5, static_cast<double>(state.row) + 0.5);
+            if (flat.is_beyond(p, beyond ? m_options.margin : 0, rounding)) continue;
             const glm::dvec3 weights = flat.weights(p);
             const bool inside = std::min({weights.x, weights.y, weights.z}) >= 0;
             if (!inside && !(beyond && flat.distance(p) <= m_options.margin)) continue;
             mine = 1;
             texels.columns[texels.count] = i;
             texels.points[texels.count++] = q[0] * weights.x + q[1] * weights.y + q[2] * weights.z;
-            if (texels.count == Texels::kMost) paint(m_mesh[triangle], state);
+            if (texels.count == Texels::kMost) paint(triangle, state);
         }
-        if (texels.count > 0) paint(m_mesh[triangle], state);
+        if (texels.count > 0) paint(triangle, state);
     }
 
     /// Paints the texels that have been gathered of a triangle.
-    void paint(const BakedTriangle& triangle, RowState& state) {
+    void paint(std::size_t triangle, RowState& state) {
         Texels& texels = state.texels;
-        const auto& q = triangle.points;
+        const auto& q = m_mesh[triangle].points;
         const glm::dvec3 normal = glm::cross(q[1] - q[0], q[2] - q[0]);
         const std::size_t channels = static_cast<std::size_t>(m_options.channels);
         std::vector<double>& sums = state.sums;
         sums.assign(texels.count * channels, 0.0);
         std::array<double, Texels::kMost> all = {};
-        for (const ThrownPicture& picture : m_pictures) {
-            bool searched = !picture.occluders;
+        for (std::size_t p = 0; p < m_pictures.size(); ++p) {
+            const ThrownPicture& picture = m_pictures[p];
+            const std::vector<std::int32_t>* before = nullptr;
             for (std::size_t k = 0; k < texels.count; ++k) {
                 const glm::dvec3& point = texels.points[k];
                 Point<double> at{};
                 const double share = share_of(picture.projector, point, normal, m_options.fade, at);
                 if (!(share > 0)) continue;
-                if (!searched) {
-                    picture.occluders->find_before({texels.points.data(), texels.count}, state.before);
-                    searched = true;
-                }
-                if (picture.occluders && picture.occluders->hides(point, state.before)) continue;
+                if (picture.occluders && !before) before = &hiders(p, triangle, state);
+                if (before && picture.occluders->hides(point, *before)) continue;
                 all[k] += share;
                 read_pixel(picture.projector.panorama(), picture.pixels, m_options.channels, at,
                            picture.projector.ray(point), share, sums.data() + k * channels);
@@ -220,10 +296,23 @@ class Baking {
         texels.count = 0;
     }
 
+    /// What may hide the texels that have been gathered of a triangle from a picture's projector.
+    const std::vector<std::int32_t>& hiders(std::size_t picture, std::size_t triangle, RowState& state) {
+        const Occluders& occluders = *m_pictures[picture].occluders;
+        const auto about = [&] {
+            return m_flat[triangle].enlarged(m_mesh[triangle].points, m_options.margin);
+        };
+        const auto& found = m_hiders[picture]->of(triangle, occluders, about);
+        if (found.few) return found.triangles;
+        occluders.find_before({state.texels.points.data(), state.texels.count}, state.before);
+        return state.before;
+    }
+
     const std::vector<BakedTriangle>& m_mesh;
     const std::vector<ThrownPicture>& m_pictures;
     const BakeOptions& m_options;
     std::vector<FlatTriangle> m_flat;
+    std::vector<std::unique_ptr<HidersOfTriangles>> m_hiders;  ///< of each picture; null where nothing hides
     std::vector<std::vector<std::size_t>> m_rows;
     std::int64_t m_stride;
     int m_begin = 0, m_end = 0;  ///< of the rows that the texture holds
