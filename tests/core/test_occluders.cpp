@@ -329,6 +329,58 @@ TEST(Occluders, WhatMayHidePointsIsFoundForThemTogether) {
     }
 }
 
+TEST(Occluders, WhatMayHideATriangleHidesItsPoints) {
+    std::mt19937 random(13);
+    const auto number = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    const auto triangle = [&](double size) {
+        const glm::dvec3 at(number(-2, 2), number(-2, 2), number(-2, 2));
+        Triangle t;
+        for (glm::dvec3& corner : t)
+            for (int k = 0; k < 3; ++k) corner[k] = at[k] + number(-size, size);
+        return t;
+    };
+    Triangles before;
+    for (int i = 0; i < 600; ++i) before.push_back(triangle(.3));
+    const glm::dvec3 centre(.1, -.2, .3);
+    Triangles moved = before;
+    for (Triangle& t : moved)
+        for (glm::dvec3& corner : t) corner -= centre;
+    const Occluders occluders(corners_of(before), centre);
+    std::size_t hidden = 0, lit = 0, found_in_all = 0, one = 0, too_many = 0;
+    constexpr int kTriangles = 2000;
+    for (int i = 0; i < kTriangles; ++i) {
+        // Some are parts of the scene, which hides itself.
+        const Triangle t = i % 4 == 0 ? before[static_cast<std::size_t>(i) % before.size()]
+                                      : triangle(i % 4 == 1 ? .3 : .02);
+        std::vector<std::int32_t> found{-1};
+        if (!occluders.find_before(t, 8, found)) {
+            ++too_many;
+            continue;
+        }
+        found_in_all += found.size();
+        one += found.size() == 1 ? 1 : 0;
+        for (int k = 0; k < 20; ++k) {
+            // Corners and sides, too.
+            glm::dvec3 weights(k % 3 ? number(0, 1) : 0, k % 5 ? number(0, 1) : 0, number(0, 1));
+            weights /= weights.x + weights.y + weights.z;
+            const glm::dvec3 p = t[0] * weights.x + t[1] * weights.y + t[2] * weights.z;
+            const bool expected = is_hidden(p - centre, moved);
+            EXPECT_EQ(occluders.hides(p, found), expected) << i;
+            ++(expected ? hidden : lit);
+        }
+    }
+    EXPECT_GT(hidden, 5000U);
+    EXPECT_GT(lit, 5000U);
+    EXPECT_GT(one, 100U);
+    EXPECT_GT(too_many, 10U);
+    EXPECT_LT(found_in_all, kTriangles * 4U);
+    std::vector<std::int32_t> found;
+    EXPECT_FALSE(
+        occluders.find_before(Triangle{glm::dvec3(NAN), glm::dvec3(1.0), glm::dvec3(2.0)}, 8, found));
+}
+
 TEST(Occluders, TheFarSideOfABallIsNotCutAlongItsNearSide) {
     const Triangles scene = ball({0.3, 0.2, -3}, 1, 16);
     ProjectionOptions options;

@@ -259,7 +259,7 @@ void Occluders::find_before(std::span<const glm::dvec3> points, std::vector<std:
 bool Occluders::find_before(const Rays& triangle, std::size_t most, std::vector<std::int32_t>& found) const {
     found.clear();
     const Rays r{triangle[0] - m_centre, triangle[1] - m_centre, triangle[2] - m_centre};
-    const double size = std::max({glm::length(r[0]), glm::length(r[1]), glm::length(r[2])});
+    const double size = glm::length(r[0]) + glm::length(r[1]) + glm::length(r[2]);
     bool enough = size < HUGE_VAL;
     if (!enough) return false;
     for_each_in(region_before(r), [&](std::int32_t i) {
