@@ -132,6 +132,31 @@ TEST(ProjectionBake, WhatOneDoesNotSeeTheOtherPaints) {
     EXPECT_EQ(texture.painted + texture.unseen, 64 * 64);
 }
 
+TEST(ProjectionBake, WhatIsHiddenBeyondATriangleStaysUnpainted) {
+    // Corners at x = 0.3; a board hides what is to the right of 0.305, and texels beyond the triangle go on to 0.38.
+    const auto corner = [](double x, double y) { return glm::dvec2((x + 1) / 2, (y + 1) / 2); };
+    const std::vector<BakedTriangle> mesh{{{glm::dvec3(-.5, -.5, -1), {.3, -.5, -1}, {-.5, .3, -1}},
+                                           {corner(-.5, -.5), corner(.3, -.5), corner(-.5, .3)}}};
+    const Occluders board({{.1525, -9, -.5}, {9, 0, -.5}, {.1525, 9, -.5}}, {});
+    const Chart chart(Projection::equirectangular, 64, 32);
+    const std::vector<float> pixels = plain(64, 32, 1);
+    BakeOptions options;
+    options.size = {100, 100};
+    options.margin = 4;
+    const BakedTexture all = bake(mesh, {{Projector(chart), pixels.data()}}, options),
+                       seen = bake(mesh, {{Projector(chart), pixels.data(), &board}}, options);
+    int hidden = 0;
+    for (std::size_t j = 0; j < 100; ++j)
+        for (std::size_t i = 0; i < 100; ++i) {
+            const double x = (static_cast<double>(i) + 0.5) / 50 - 1;
+            const float painted = all.pixels[4 * (100 * j + i) + 3];
+            hidden += painted != 0 && x > .305 ? 1 : 0;
+            EXPECT_EQ(seen.pixels[4 * (100 * j + i) + 3], x > .305 ? 0 : painted) << i << " " << j;
+        }
+    EXPECT_GT(hidden, 10);
+    EXPECT_EQ(seen.unseen, hidden);
+}
+
 TEST(ProjectionBake, SeamsAreReadAcrossAndFacesAreNot) {
     // Behind, where the panorama closes: columns 0 and 63 are the same wall.
     std::vector<float> pixels = plain(64, 32, 0);
