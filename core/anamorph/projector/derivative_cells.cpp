@@ -13,6 +13,7 @@ namespace {
 
 // The least and the largest reach of cells beyond their squares.
 constexpr double kLeast = 0x1p-30, kMost = 0.125;
+// The least width of a square, in reaches.
 constexpr double kWider = 4;
 // Stands for a few roundings of numbers of which 1 is the size, and of frames, which are off by 64 * 2^-53 of a ray.
 constexpr double kRounding = 1e-13;

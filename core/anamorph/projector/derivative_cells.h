@@ -6,11 +6,13 @@
 // at the middle, of either sign, and x and y for the two others. As F is the same along a ray, F(x, y, z) = G(u, v), and by the
 // chain rule its derivatives along e and f, in space, are
 //     F''[e, f] = G''[w_e, w_f] - a_e G'[w_f] - a_f G'[w_e],   w_e = (e_x - u e_z, e_y - v e_z) / z,   a_e = e_z / z,     (1)
-// w_f and a_f alike, since w_e itself changes by -a_e w_f - a_f w_e along f. G' and G'' are jets of intervals (number/jet.h) over
-// the cell, and u, v and z range over the edge or triangle.
+// w_f and a_f alike, since w_e itself changes by -a_e w_f - a_f w_e along f. Here u, v and z range over the edge or triangle.
 //
-// A cell reaches as far beyond its square as that is wide, and levels have squares of different widths: an edge or a triangle
-// reads that of its middle on the level with the smallest ones that reach its corners.
+// G' and G'' are read at the cell's middle, third derivatives over all of it, as jets of intervals (number/jet.h): Taylor's formula gives G' and G'' over the range of
+// an edge, with what they may be off, which is little more than they change along it.
+//
+// Squares have widths that are powers of 2, from 4 to 8 times the reach of what is asked for from its middle, and cells go on by a
+// quarter beyond, so that an edge or a triangle lies in the cell of its middle. Many lie in the same.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +25,12 @@ namespace anamorph {
 
 /// F''[e, e], F''[e, f] and F''[f, f] of one coordinate of F over a triangle: middles, and how far off they may be anywhere.
 struct SecondForms {
-    double ee = 0, ef = 0, ff = 0;
-    double off_ee = 0, off_ef = 0, off_ff = 0;
+    double ee = 0;      ///< the middle of F''[e, e]
+    double ef = 0;      ///< the middle of F''[e, f]
+    double ff = 0;      ///< the middle of F''[f, f]
+    double off_ee = 0;  ///< how far F''[e, e] may be off its middle
+    double off_ef = 0;  ///< how far F''[e, f] may be off its middle
+    double off_ff = 0;  ///< how far F''[f, f] may be off its middle
 };
 
 /// Second derivatives of a panorama of one piece, by cells that are read when they are first asked for. Several threads may ask

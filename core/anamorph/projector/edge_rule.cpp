@@ -196,7 +196,8 @@ Reading read(const Chart& chart, const RayTriangle& triangle, const Branch& bran
 
 EdgeRule::EdgeRule(const Projector& projector, double tol, double smallest, bool single)
     : m_projector(projector), m_tol(tol), m_smallest(smallest), m_on_plane(single ? 0x1p-20 : 0x1p-40) {
-    if (projector.panorama().pieces().size() == 1)
+    // Where a panorama ends, cells would tell less than boxes of their own do, and triangles next to edges would be cut more often.
+    if (projector.panorama().closed())
         m_cells = std::make_unique<const DerivativeCells>(projector.panorama());
 }
 
@@ -332,7 +333,7 @@ EdgeFinding EdgeRule::judge_by_cells(const glm::dvec3& a, const glm::dvec3& b) c
     const auto length = [](double x, double y) { return std::sqrt(x * x + y * y) * kHair; };
     const double middle = length(bend->x.ee, bend->y.ee) / 8,
                  off = length(bend->x.off_ee, bend->y.off_ee) / 8;
-    if (middle + off <= kShare * m_tol) return {EdgeVerdict::bounded, middle + off};
+    if (middle + off <= kSureShare * m_tol) return {EdgeVerdict::bounded, middle + off};
     // Bent by more than that everywhere, no bound of it is any less. What may be tiny (judge_rays) is not settled here.
     const glm::dvec3 across = glm::cross(a, b);
     const double seen = 2 * std::sqrt(glm::dot(across, across) / (glm::dot(a, a) * glm::dot(b, b))) *

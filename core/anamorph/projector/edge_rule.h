@@ -18,6 +18,9 @@
 // An edge is judged as the triangle that it is when two corners fall together, by a share of the tolerance. Triangles with
 // such sides mostly hold it, as they have little more in their middle; those that do not are split within.
 //
+// Of panoramas that close on themselves, most edges and triangles are judged by F'' over a cell of directions that has others in it, too (derivative_cells.h), which takes
+// a fifth of the time; those that this leaves open, by their own boxes.
+//
 // Where F'' has no such bound (at poles and axes), edges are split until what they may be off as directions, 4 rho at most
 // in a fan of triangles about a pole within a tangent of rho, is less than the tolerance at the panorama's middle.
 //
@@ -96,12 +99,15 @@ class EdgeRule {
 
     /// The share of the tolerance that edges may take.
     static constexpr double kShare = 0.9;
+    /// The share that an edge may take if it is judged by cells: what is nearer to the tolerance is judged by its own box, which tells
+    /// better whether triangles along it will hold the tolerance.
+    static constexpr double kSureShare = 0.7;
     /// The share by which boxes about edges are enlarged, so that triangles along them do not fail narrowly.
     static constexpr double kWider = 0.02;
 
     const Projector& m_projector;
     double m_tol, m_smallest, m_on_plane;
-    /// What derivatives of a panorama of one piece are; null of others.
+    /// The derivatives of a panorama that closes on itself; null of others.
     std::unique_ptr<const DerivativeCells> m_cells;
 };
 
