@@ -174,7 +174,7 @@ std::string way_of(const Block& block) {
         case Block::Kind::computed:
             return block.precise ? "direct in double" : "direct";
         case Block::Kind::exact:
-            return block.precise ? "exact in long double" : "exact";
+            return block.precise ? "exact in pairs of doubles" : "exact";
         case Block::Kind::outside:
             break;
     }

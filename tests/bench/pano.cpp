@@ -5,7 +5,7 @@
 // rounds. Schemes: automatic, blocks, residual and exact plan a fresh picture each time,
 // planning included; automatic_kept draws with a plan made before. Rivals: pano_rivals.h.
 //
-// Errors are distances of the source points used from Panorama::exact<long double>, over all pixels. The
+// Errors are distances of the source points used from Panorama::exact<DoubleDouble>, over all pixels. The
 // points come from evaluating the plan's blocks here (pano_points.h), from the rivals' own formulas, and are
 // checked twice: against Output::error, and by drawing a picture whose values are its coordinates.
 #include <algorithm>

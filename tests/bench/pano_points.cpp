@@ -24,9 +24,9 @@ Points true_points(const Panorama& map, const ParallelFor& parallel_for) {
         parallel_for(box.height(), [&](std::int64_t row) {
             const int j = box.y0 + static_cast<int>(row);
             for (int i = box.x0; i < box.x1; ++i) {
-                Point<long double> p{};
+                Point<DoubleDouble> p{};
                 int piece = 0;
-                if (map.exact(i + 0.5L, j + 0.5L, static_cast<int>(k), p, piece))
+                if (map.exact(DoubleDouble(i + 0.5), DoubleDouble(j + 0.5), static_cast<int>(k), p, piece))
                     at(map, points, i, j) = {static_cast<double>(p.x), static_cast<double>(p.y)};
             }
         });

@@ -7,7 +7,7 @@
 // points, and the first one as an ST-map, pixel by pixel. Every scheme draws a fresh picture each time, planning included. `double` is the loop that one
 // writes in an afternoon: the patch at every pixel in double, then four texels. Rivals: warp_rivals.h.
 //
-// Errors are distances of the source points used from the map in long double (of the inverse and of points:
+// Errors are distances of the source points used from the map in pairs of doubles (of the inverse and of points:
 // in double), over all pixels that have a point; they come from the blocks and from the rivals' own formulas.
 #include <algorithm>
 #include <cmath>
@@ -168,8 +168,8 @@ struct Scene {
                 Point<double>& p = truth[index_of(x, y, size)];
                 int piece = 0;
                 if (own) {
-                    const Point<long double> q =
-                        own->at(own->patch(own->cell_at(x + 0.5, y + 0.5)), x + 0.5L, y + 0.5L);
+                    const Point<DoubleDouble> q = own->at(own->patch(own->cell_at(x + 0.5, y + 0.5)),
+                                                          DoubleDouble(x + 0.5), DoubleDouble(y + 0.5));
                     p = {static_cast<double>(q.x), static_cast<double>(q.y)};
                 } else if (!exact.maps[0].blocks->exact(x + 0.5, y + 0.5, 0, p, piece)) {
                     p = {std::nan(""), std::nan("")};

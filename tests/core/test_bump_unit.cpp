@@ -152,10 +152,10 @@ TEST(BumpUnit, BoundsHoldAndThePictureSaysWhatWasReached) {
         for (int row = 0; row < block.box.height(); ++row) {
             bumped.exact_rows(block, row, row + 1, {x.data(), y.data(), piece.data(), 80});
             for (int i = 0; i < block.box.width(); ++i) {
-                Point<long double> exact{};
+                Point<DoubleDouble> exact{};
                 int source_piece = 0;
-                ASSERT_TRUE(map.exact<long double>(block.box.x0 + i + 0.5, block.box.y0 + row + 0.5, 0, exact,
-                                                   source_piece));
+                ASSERT_TRUE(map.exact<DoubleDouble>(block.box.x0 + i + 0.5, block.box.y0 + row + 0.5, 0,
+                                                    exact, source_piece));
                 // The view is across the seam.
                 const auto k = static_cast<std::size_t>(i);
                 const double across = std::remainder(x[k] - double(exact.x), 400.0);

@@ -104,11 +104,11 @@ TEST(Chart, DoubleAgreesWithLongDouble) {
             const Ray<double> ray{normal(random), normal(random), normal(random)};
             // Where the scale of the chart does not explode.
             if (ray.z < 0.05 * length(ray) && !has_faces(projection)) continue;
-            const Ray<long double> precise{ray.x, ray.y, ray.z};
+            const Ray<DoubleDouble> precise{ray.x, ray.y, ray.z};
             const int piece = chart.piece_of(ray);
             ASSERT_EQ(chart.piece_of(precise), piece);
             const Point<double> p = chart.point(ray, piece);
-            const Point<long double> q = chart.point(precise, piece);
+            const Point<DoubleDouble> q = chart.point(precise, piece);
             ASSERT_NEAR(p.x, static_cast<double>(q.x), 1e-8) << name_of(projection);
             ASSERT_NEAR(p.y, static_cast<double>(q.y), 1e-8) << name_of(projection);
         }
@@ -248,8 +248,8 @@ TEST(Chart, ModelsOfSpheresMeet) {
         for (const Chart& other : others)
             for (const double x : {3.0, 250.5, 599.0})
                 for (const double y : {1.0, 220.0}) {
-                    const Ray<long double> there = unified.ray<long double>(x, y);
-                    const Point<long double> p = other.point(there, 0);
+                    const Ray<DoubleDouble> there = unified.ray<DoubleDouble>(x, y);
+                    const Point<DoubleDouble> p = other.point(there, 0);
                     // alpha / (1 - alpha) of 3/4 and 1/4 is 3 and 1/3, rounded.
                     EXPECT_NEAR(static_cast<double>(p.x - x), 0, 1e-13) << name_of(other.projection());
                     EXPECT_NEAR(static_cast<double>(p.y - y), 0, 1e-13) << name_of(other.projection());

@@ -402,7 +402,7 @@ class Counting final : public DrapedSurface {
         ++frames;
         return m_of->frame(u, v);
     }
-    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
+    std::array<DoubleDouble, 3> truth(DoubleDouble u, DoubleDouble v) const noexcept override {
         return m_of->truth(u, v);
     }
     SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
@@ -1170,7 +1170,7 @@ class CountedSurface final : public DrapedSurface {
     glm::dvec3 position(double u, double v) const noexcept override { return m_surface->position(u, v); }
     double rounding(double u, double v) const noexcept override { return m_surface->rounding(u, v); }
     SurfaceFrame frame(double u, double v) const noexcept override { return m_surface->frame(u, v); }
-    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
+    std::array<DoubleDouble, 3> truth(DoubleDouble u, DoubleDouble v) const noexcept override {
         return m_surface->truth(u, v);
     }
     SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {

@@ -38,10 +38,10 @@ class Wall final : public DrapedSurface {
         m_curve.point(Jet<double, 1>::variable(u, 1, 0), x, z);
         return {{x.c[0], 0.5 - v, z.c[0]}, {x.c[1], 0, z.c[1]}, {0, -1, 0}};
     }
-    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
-        long double x, z;
+    std::array<DoubleDouble, 3> truth(DoubleDouble u, DoubleDouble v) const noexcept override {
+        DoubleDouble x, z;
         m_curve.point(u, x, z);
-        return {x, 0.5L - v, z};
+        return {x, 0.5 - v, z};
     }
     SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
         using J = Jet<Interval, 2>;

@@ -397,15 +397,18 @@ TEST(FormulaView, RowsAreExactOnEveryInstructionSet) {
                         map.exact_row(i + 0.5, j + 0.5, 1, &alone_x, &alone_y, &alone);
                         ASSERT_EQ(std::memcmp(&alone_x, &x[k], sizeof(double)), 0) << i << " " << j;
                         ASSERT_EQ(alone, piece[k]);
-                        Point<Real> truth{};
+                        Point<DoubleDouble> truth{};
                         int at = 0;
                         const Interval in_x(i + 0.5), in_y(j + 0.5);
                         const double bound = map.exact_error<double>(in_x, in_y, 0) +
-                                             map.exact_error<long double>(in_x, in_y, 0);
+                                             map.exact_error<DoubleDouble>(in_x, in_y, 0);
                         if (!std::isfinite(bound)) continue;
-                        ASSERT_EQ(map.exact<Real>(i + 0.5L, j + 0.5L, 0, truth, at), piece[k] >= 0);
+                        ASSERT_EQ(map.exact<DoubleDouble>(i + 0.5, j + 0.5, 0, truth, at), piece[k] >= 0);
                         if (piece[k] < 0 || at != piece[k]) continue;
-                        ASSERT_LE(distance(source, {x[k], y[k]}, truth), bound) << i << " " << j;
+                        ASSERT_LE(distance(source, {x[k], y[k]},
+                                           {static_cast<Real>(truth.x), static_cast<Real>(truth.y)}),
+                                  bound)
+                            << i << " " << j;
                     }
                     all.insert(all.end(), x.begin(), x.end());
                     all.insert(all.end(), y.begin(), y.end());

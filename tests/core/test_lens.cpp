@@ -94,17 +94,17 @@ TEST(Lens, ObservedPointsComeBack) {
                 using R = Rounded<T>;
                 const Point<T> q = there_and_back(point);
                 const Point<R> bound = there_and_back(Point<R>{R(double(point.x)), R(double(point.y))});
-                EXPECT_FALSE(std::fabs(q.x - point.x) > bound.x.error) << text;
-                EXPECT_FALSE(std::fabs(q.y - point.y) > bound.y.error) << text;
+                EXPECT_FALSE(fabs(q.x - point.x) > bound.x.error) << text;
+                EXPECT_FALSE(fabs(q.y - point.y) > bound.y.error) << text;
                 tight += bound.x.error <= 1e4 * R::kUnit * lens.reach();
             };
             const auto by_ideal = [&](const auto& q) { return lens.observed(lens.ideal(q)); };
             const auto by_observed = [&](const auto& q) { return lens.ideal(lens.observed(q)); };
             expect_back(p, by_ideal);
-            expect_back(Point<Real>{p.x, p.y}, by_ideal);
+            expect_back(Point<DoubleDouble>{p.x, p.y}, by_ideal);
             const Point<double> u = lens.ideal(p);
             expect_back(u, by_observed);
-            expect_back(Point<Real>{u.x, u.y}, by_observed);
+            expect_back(Point<DoubleDouble>{u.x, u.y}, by_observed);
         });
         EXPECT_GT(tight, 600) << text;
     }

@@ -28,7 +28,7 @@ using Float32 = FormatNumber<kFloat32>;
 using Fixed16 = FormatNumber<kFixed16>;
 using Fixed32 = FormatNumber<kFixed32>;
 
-static_assert(FormulaNumber<double> && FormulaNumber<long double> && FormulaNumber<Interval>);
+static_assert(FormulaNumber<double> && FormulaNumber<DoubleDouble> && FormulaNumber<Interval>);
 static_assert(FormulaNumber<Jet<double, 4>> && FormulaNumber<Jet<Interval, 2>>);
 static_assert(FormulaNumber<Float16> && FormulaNumber<Float24> && FormulaNumber<Fixed16> &&
               FormulaNumber<Fixed32>);
@@ -36,7 +36,7 @@ static_assert(FormulaNumber<Float16> && FormulaNumber<Float24> && FormulaNumber<
 double middle(double a) {
     return a;
 }
-double middle(long double a) {
+double middle(const DoubleDouble& a) {
     return static_cast<double>(a);
 }
 double middle(const Interval& a) {
@@ -71,7 +71,7 @@ class Numbers : public testing::Test {
 };
 
 using AllNumbers =
-    testing::Types<double, long double, Interval, Rounded<double>, Jet<double, 1>, Jet<double, 4>,
+    testing::Types<double, DoubleDouble, Interval, Rounded<double>, Jet<double, 1>, Jet<double, 4>,
                    Jet<Interval, 1>, Jet<Interval, 3>, Float16, Float24, Float32, Fixed16, Fixed32>;
 TYPED_TEST_SUITE(Numbers, AllNumbers);
 
@@ -133,7 +133,7 @@ TYPED_TEST(Numbers, ReadEveryLens) {
 template <class T>
 class FormulaNumbers : public Numbers<T> {};
 // Bounds of rounding are asked of projections only.
-using DeformationNumbers = testing::Types<double, long double, Interval, Jet<double, 2>, Jet<Interval, 2>,
+using DeformationNumbers = testing::Types<double, DoubleDouble, Interval, Jet<double, 2>, Jet<Interval, 2>,
                                           Float16, Float24, Float32, Fixed16, Fixed32>;
 TYPED_TEST_SUITE(FormulaNumbers, DeformationNumbers);
 

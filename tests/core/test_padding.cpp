@@ -89,7 +89,7 @@ TEST(ChartPadding, ScalesAreAsPreciseAsTheySay) {
              {std::pair{cubemap, 2.0L}, {fisheye, std::numbers::pi_v<long double>}}) {
             // Both are exact in long double, but for pi.
             const long double truth = (n - 2.0L * static_cast<long double>(padding)) / plane;
-            const auto scale = chart_of(projection, n, padding).pixels_per_unit().as<Rounded<long double>>();
+            const auto scale = chart_of(projection, n, padding).pixels_per_unit().as<Rounded<DoubleDouble>>();
             EXPECT_LE(scale.range.lo, truth);
             EXPECT_GE(scale.range.hi, truth);
             EXPECT_LT(scale.error, 1e-17 * static_cast<double>(truth));

@@ -16,7 +16,7 @@ namespace anamorph::test_panorama_rows {
 namespace {
 
 /// Distance in source pixels; around a source that turns, or from face to face, points of one ray are one.
-double distance(const Chart& source, const Point<double>& p, int piece, const Point<long double>& q,
+double distance(const Chart& source, const Point<double>& p, int piece, const Point<DoubleDouble>& q,
                 int q_piece) {
     if (piece != q_piece) return 0;
     double dx = static_cast<double>(p.x - q.x);
@@ -40,9 +40,9 @@ void compare(const Panorama& map, Found& found) {
             for (int i = 0; i < count; ++i) {
                 const double px = box.x0 + i + 0.5, py = y + 0.5;
                 const double bound = map.exact_error<double>(px, py, k);
-                Point<long double> q{};
+                Point<DoubleDouble> q{};
                 int q_piece = 0;
-                const bool seen = map.exact<long double>(px, py, k, q, q_piece);
+                const bool seen = map.exact<DoubleDouble>(px, py, k, q, q_piece);
                 if (!(bound < 1)) continue;
                 if (seen != (row.seen[i] != 0)) {
                     ++found.differ_in_seen;

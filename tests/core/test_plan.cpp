@@ -30,7 +30,7 @@ struct Findings {
 };
 
 /// Distance in source pixels, x counted around a source that closes on itself.
-double distance(const Chart& source, double x, double y, const Point<long double>& exact) {
+double distance(const Chart& source, double x, double y, const Point<DoubleDouble>& exact) {
     double dx = static_cast<double>(x - exact.x);
     if (source.closed()) dx -= std::round(dx / source.period()) * source.period();
     return std::hypot(dx, static_cast<double>(y - exact.y));
@@ -58,9 +58,10 @@ Findings examine(const Panorama& map, const PlanOptions& options) {
                         ++found.exact_pixels;
                         continue;
                     }
-                    Point<long double> p{};
+                    Point<DoubleDouble> p{};
                     int piece = 0;
-                    const bool seen = map.exact(i + 0.5L, j + 0.5L, block.piece, p, piece);
+                    const bool seen =
+                        map.exact(DoubleDouble(i + 0.5), DoubleDouble(j + 0.5), block.piece, p, piece);
                     if (!drawn) {
                         const bool within = seen && p.x > -4 && p.x < map.source().width() + 4 && p.y > -4 &&
                                             p.y < map.source().height() + 4;

@@ -502,10 +502,10 @@ TEST(ProjectionOracle, PanninisScaleIsAsPreciseAsItSays) {
         SCOPED_TRACE(testing::Message() << "fov " << fov << " d " << d);
         const Chart chart(Projection::pannini, 128, 128, fov, PixelSpacing::edges, "", d);
         const Constant& scale = chart.pixels_per_unit();
-        const auto bounded = scale.as<Rounded<Real>>();
+        const auto bounded = scale.as<Rounded<DoubleDouble>>();
         EXPECT_GE(bounded.range.hi, truth);
         EXPECT_LE(bounded.range.lo, truth);
-        EXPECT_LE(std::fabs(scale.precise() - truth), bounded.error);
+        EXPECT_LE(std::fabs(static_cast<Real>(scale.precise()) - truth), bounded.error);
         EXPECT_LE(bounded.error, 1e-7 * truth);
     };
     for (const double fov : {359.99999964, 359.99964, 300.0, 90.0})

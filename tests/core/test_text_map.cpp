@@ -156,10 +156,9 @@ TEST(TextMap, PixelsWithoutAPointAreCounted) {
         std::int64_t count = 0;
         for (int y = 0; y < target.height; ++y)
             for (int x = 0; x < target.width; ++x) {
-                const Point<long double> at{x + 0.5L, y + 0.5L};
-                const Point<long double> p = map.source_point(at.x, at.y);
-                count +=
-                    !(map.inside(at.x, at.y) > 0 && std::fabs(p.x) <= std::numeric_limits<double>::max());
+                const Point<DoubleDouble> at{x + 0.5, y + 0.5};
+                const Point<DoubleDouble> p = map.source_point(at.x, at.y);
+                count += !(map.inside(at.x, at.y) > 0 && fabs(p.x) <= std::numeric_limits<double>::max());
             }
         EXPECT_EQ(map.undefined_pixels({0, 0, target.width, target.height}), count) << u;
     }
@@ -298,11 +297,11 @@ TEST(TextMap, WhatUnderflowsIsOffByNoMoreThanItsBound) {
             if (block.kind != Block::Kind::exact) continue;
             const double x = block.box.x0 + 0.5, y = block.box.y0 + 0.5;
             Point<double> p{};
-            Point<long double> truth{};
+            Point<DoubleDouble> truth{};
             int piece = 0;
             ASSERT_TRUE(static_cast<const BlockMap&>(plan).exact(block, x, y, p, piece)) << u;
             ASSERT_TRUE(plan.truth(x, y, 0, truth, piece)) << u;
-            EXPECT_LE(std::fabs(p.x - truth.x), block.bound) << u;
+            EXPECT_LE(fabs(p.x - truth.x), block.bound) << u;
         }
     }
 }
@@ -797,14 +796,14 @@ TEST(TextMap, RowsHoldTheBoundOfExactPixelsOnEveryInstructionSet) {
                     EXPECT_EQ(piece_alone[0], piece[k]) << i;
                     const double bound =
                         map.exact_error<double>(Interval(i + 0.5), Interval(j + 0.5), 0) +
-                        map.exact_error<long double>(Interval(i + 0.5), Interval(j + 0.5), 0);
-                    Point<long double> truth{};
+                        map.exact_error<DoubleDouble>(Interval(i + 0.5), Interval(j + 0.5), 0);
+                    Point<DoubleDouble> truth{};
                     int at = 0;
-                    const bool is_seen = map.exact<long double>(i + 0.5L, j + 0.5L, 0, truth, at);
+                    const bool is_seen = map.exact<DoubleDouble>(i + 0.5, j + 0.5, 0, truth, at);
                     if (!std::isfinite(bound)) continue;
                     ASSERT_EQ(piece[k] >= 0, is_seen) << i;
                     if (is_seen) {
-                        EXPECT_LE(std::fabs(x[k] - truth.x), bound) << i;
+                        EXPECT_LE(fabs(x[k] - truth.x), bound) << i;
                     }
                 }
                 if (j == 0 && first.empty()) first = x;

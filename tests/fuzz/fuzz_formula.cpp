@@ -27,13 +27,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const Block& block : plan.blocks(0)) {
             if (block.kind != Block::Kind::exact) continue;
             Point<double> point{};
-            Point<long double> truth{};
+            Point<DoubleDouble> truth{};
             int piece = 0;
             const double x = block.box.x0 + 0.5, y = block.box.y0 + 0.5;
             if (!static_cast<const BlockMap&>(plan).exact(block, x, y, point, piece)) continue;
             if (!std::isfinite(block.bound) || !plan.truth(x, y, 0, truth, piece)) continue;
-            const long double error = std::hypot(point.x - truth.x, point.y - truth.y);
-            // Long double rounds too.
+            const auto error = static_cast<double>(hypot(point.x - truth.x, point.y - truth.y));
+            // The truth is rounded too.
             fuzz::require(error <= block.bound * (1 + 1e-3), "a point lies within its bound");
         }
     });

@@ -26,13 +26,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const double x : {0.5, 2.5}) {
             constexpr double kRow = 1.5;
             Point<double> point{};
-            Point<long double> truth{};
+            Point<DoubleDouble> truth{};
             int piece = 0;
             if (map.preimages(x, kRow).on_fold || !map.exact(x, kRow, 0, point, piece)) continue;
-            fuzz::require(map.exact<long double>(x, kRow, 0, truth, piece), "long double finds a point, too");
+            fuzz::require(map.exact<DoubleDouble>(x, kRow, 0, truth, piece),
+                          "DoubleDouble finds a point, too");
             const double bound =
-                map.exact_error<double>(x, kRow, 0) + map.exact_error<long double>(x, kRow, 0);
-            const auto off = static_cast<double>(std::hypot(point.x - truth.x, point.y - truth.y));
+                map.exact_error<double>(x, kRow, 0) + map.exact_error<DoubleDouble>(x, kRow, 0);
+            const auto off = static_cast<double>(hypot(point.x - truth.x, point.y - truth.y));
             fuzz::require(!(off > bound), "points lie within their bounds");
         }
     });

@@ -26,7 +26,7 @@ void check_displacement(const DisplacementText& text) {
         const long double u = p.x, v = p.y;
         const bool has_value = formula.is_everywhere || read_program<1>(formula.domain, u, v)[0] > 0;
         const long double exact = has_value ? read_program<3>(formula.point, u, v)[2] : 0;
-        // Long double rounds too.
+        // The truth is rounded too.
         const long double unit = 0x1p-60L * (std::fabs(exact) + 1);
         fuzz::require(std::fabs(exact - offsets.values[2]) <= offsets.error_bound * (1 + 1e-3) + unit,
                       "a displacement lies within its bound");
@@ -54,12 +54,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 const Interval place = surface->range(u, v)[2].c[0];
                 const double lost = surface->rounding(u, v), s = u.lo / 3 + u.hi / 3 * 2;
                 const double z = surface->position(s, v.lo).z;
-                const long double exact = surface->truth(s, v.lo)[2];
+                const auto exact = static_cast<long double>(surface->truth(s, v.lo)[2]);
                 if (!std::isfinite(magnitude(place)) || !std::isfinite(lost)) continue;
                 // What overflows on its way has no point.
                 if (!std::isfinite(z)) continue;
                 fuzz::require(z >= place.lo && z <= place.hi, "a point lies within the range of its box");
-                // Long double rounds too.
+                // The truth is rounded too.
                 const long double unit = 0x1p-60L * (std::fabs(exact) + 1);
                 fuzz::require(exact >= place.lo - unit && exact <= place.hi + unit,
                               "an exact point lies within the range of its box");

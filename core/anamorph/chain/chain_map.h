@@ -73,7 +73,7 @@ class ChainMap {
         if (!local.inner) return {T(NAN), T(NAN)};
         return m_inner->read(in_middle(m_outer->read(Point<T>{x, y}, local.outer), local.shift), local.inner);
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {
         Point<Real> at;
         if (!m_outer->exact(x, y, piece, at, source_piece)) return false;
@@ -86,7 +86,7 @@ class ChainMap {
     /// `off`: how far the points of the box may be off themselves (MapLink::exact_error).
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece, double off = 0) const {
-        return exact_error(x, y, piece, off, std::is_same_v<Real, long double>);
+        return exact_error(x, y, piece, off, std::is_same_v<Real, DoubleDouble>);
     }
     /// The way of a box of target points into the picture in the middle.
     struct Way {
@@ -146,7 +146,7 @@ class ChainMap {
         const int period = m_outer->source_period();
         if (period == 0) return {p.x + m_middle.origin.x, p.y + m_middle.origin.y};
         const Real y = m_middle.has_poles ? std::clamp<Real>(p.y, 0, m_inner->target_size().height) : p.y;
-        return {p.x - std::floor(p.x / period) * period, y};
+        return {p.x - floor(p.x / period) * period, y};
     }
     /// The point of the picture in the middle, shifted into it, and how it moves with a target point on a way; none where it is not known.
     template <class T>

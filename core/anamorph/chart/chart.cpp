@@ -40,22 +40,24 @@ void check_fov(Projection projection, double fov, const Setting& setting, const 
 
 /// A length of the plane, and how far it is off at most.
 struct Length {
-    long double value;
+    DoubleDouble value;
     double error;
 };
 
 /// Twice the distance in the plane from its middle to the direction half of `degrees` above it. No number where there is none.
 Length height_of(Projection projection, double degrees, const Setting& setting) {
-    const long double half = std::numbers::pi_v<long double> / 180 * degrees / 2;
-    const long double s = std::sin(half), c = degrees == 180 ? 0 : std::cos(half);
-    using R = Rounded<long double>;
+    const DoubleDouble half = DoubleDouble::pi() / 180 * degrees / 2;
+    DoubleDouble s, c;
+    sin_cos(half, s, c);
+    if (degrees == 180) c = 0;
+    using R = Rounded<DoubleDouble>;
     // The angle is off by 3 units of it, at most pi, and libm by 8 of what it gives (Rounded::kLibm).
-    const auto rounded = [](long double value) { return projection::known_to(value, 18 * R::kUnit); };
+    const auto rounded = [](DoubleDouble value) { return projection::known_to(value, 18 * R::kUnit); };
     return with_projection(projection, [&](auto formulas) -> Length {
-        const long double z = formulas.looks_back ? -c : c;
-        const Point<long double> p = formulas.point(Ray<long double>{0, -s, z}, setting);
+        const DoubleDouble z = formulas.looks_back ? -c : c;
+        const Point<DoubleDouble> p = formulas.point(Ray<DoubleDouble>{0, -s, z}, setting);
         const Point<R> bound = formulas.point(Ray<R>{R(0), rounded(-s), rounded(z)}, setting);
-        return {2 * std::fabs(p.y), 2 * bound.y.error};
+        return {2 * fabs(p.y), 2 * bound.y.error};
     });
 }
 
@@ -157,15 +159,15 @@ double Chart::default_fov(Projection projection) {
 double plane_width(Projection projection, double fov, const Distance& d) {
     Setting setting;
     setting.distance = d;
-    const long double width =
+    const DoubleDouble width =
         with_projection(projection, [&](auto formulas) { return formulas.width(fov, setting); });
-    return std::isfinite(width) && width > 0 ? static_cast<double>(width) : 0;
+    return isfinite(width) && width > 0 ? static_cast<double>(width) : 0;
 }
 double plane_height(Projection projection, double vfov, const Distance& d) {
     if (has_faces(projection) || !(vfov > 0 && vfov <= most_vfov(projection))) return 0;
     Setting setting;
     setting.distance = d;
-    const long double height = height_of(projection, vfov, setting).value;
+    const DoubleDouble height = height_of(projection, vfov, setting).value;
     return height > 0 && height < kEndless ? static_cast<double>(height) : 0;
 }
 namespace {
@@ -339,17 +341,17 @@ void check_lens_of_rows(Projection projection, double fov, const LensModel& lens
 
 void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     // A difference is off by a unit at most, which is within what width_units says.
-    const long double margin = 2.0L * m_padding.pixels;
+    const DoubleDouble margin = 2.0 * m_padding.pixels;
     // Of joined rows the faces share what their margin leaves: a quotient more.
-    const long double columns = has_joined_rows() ? (m_width - margin) / faces_of(m_projection).columns
-                                                  : m_pieces[0].box.width() - margin,
-                      rows = m_pieces[0].box.height() - margin;
-    const long double plane =
+    const DoubleDouble columns = has_joined_rows() ? (m_width - margin) / faces_of(m_projection).columns
+                                                   : m_pieces[0].box.width() - margin,
+                       rows = m_pieces[0].box.height() - margin;
+    const DoubleDouble plane =
         with_projection(m_projection, [&](auto formulas) { return formulas.width(m_fov, m_setting); });
     m_setting.half_width = static_cast<double>(plane / 2);
     const bool has_square_plane = m_pieces.size() > 1 && columns != rows;
-    long double plane_down = has_square_plane ? plane : plane / columns * rows;
-    long double across = columns / plane, down = has_square_plane ? rows / plane : across;
+    DoubleDouble plane_down = has_square_plane ? plane : plane / columns * rows;
+    DoubleDouble across = columns / plane, down = has_square_plane ? rows / plane : across;
     if (m_spacing == PixelSpacing::centers) {
         if (columns < 2 || rows < 2)
             throw Error(size_name(prefix), std::to_string(m_width) + "x" + std::to_string(m_height),
@@ -362,19 +364,19 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     }
     const double units =
         with_projection(m_projection, [&](auto formulas) { return formulas.width_units(m_fov, m_setting); });
-    double error_down = units * Rounded<long double>::kUnit;  // relative
+    double error_down = units * Rounded<DoubleDouble>::kUnit;  // relative
     if (m_vertical.fov != 0) {
         const Length height = height_of(m_projection, m_vertical.fov, m_setting);
         plane_down = height.value;
         down = (m_spacing == PixelSpacing::centers ? rows - 1 : rows) / plane_down;
-        error_down = height.error / static_cast<double>(height.value) + 8 * Rounded<long double>::kUnit;
+        error_down = height.error / static_cast<double>(height.value) + 8 * Rounded<DoubleDouble>::kUnit;
     }
-    const auto constant = [&](long double value, double relative) {
+    const auto constant = [&](DoubleDouble value, double relative) {
         return Constant(value, static_cast<double>(value) * relative);
     };
-    m_sx = constant(across, units * Rounded<long double>::kUnit);
+    m_sx = constant(across, units * Rounded<DoubleDouble>::kUnit);
     m_sy = constant(down, error_down);
-    m_per_x = constant(1 / across, units * Rounded<long double>::kUnit);
+    m_per_x = constant(1 / across, units * Rounded<DoubleDouble>::kUnit);
     m_per_y = constant(1 / down, error_down);
     if (lens.kind == LensModel::Kind::none) return;
     const Lens::Plane half{plane / 2, plane_down / 2, 1 / across, 1 / down};

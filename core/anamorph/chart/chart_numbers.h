@@ -28,18 +28,18 @@ namespace anamorph {
     ANAMORPH_CHART_POINTS(external, Jet1<double>) \
     ANAMORPH_CHART_SIGHT(external, double)        \
     ANAMORPH_CHART_CREASE(external, double)
-/// The same with the numbers of which bounds are made, and with long double.
+/// The same with the numbers of which bounds are made, and with DoubleDouble.
 #define ANAMORPH_CHART_BOUNDS(external)                                                        \
-    ANAMORPH_CHART_POINTS(external, long double)                                               \
+    ANAMORPH_CHART_POINTS(external, DoubleDouble)                                              \
     ANAMORPH_CHART_POINTS(external, Interval)                                                  \
     ANAMORPH_CHART_POINTS(external, Rounded<double>)                                           \
-    ANAMORPH_CHART_POINTS(external, Rounded<long double>)                                      \
+    ANAMORPH_CHART_POINTS(external, Rounded<DoubleDouble>)                                     \
     ANAMORPH_CHART_POINTS(external, Jet1<Interval>)                                            \
     ANAMORPH_CHART_POINTS(external, Jet2<Interval>)                                            \
-    ANAMORPH_CHART_SIGHT(external, long double)                                                \
+    ANAMORPH_CHART_SIGHT(external, DoubleDouble)                                               \
     ANAMORPH_CHART_SIGHT(external, Interval)                                                   \
     ANAMORPH_CHART_SIGHT(external, Rounded<double>)                                            \
-    ANAMORPH_CHART_SIGHT(external, Rounded<long double>)                                       \
+    ANAMORPH_CHART_SIGHT(external, Rounded<DoubleDouble>)                                      \
     ANAMORPH_CHART_CREASE(external, Interval)                                                  \
     external template Interval Chart::sees_without_lens(const Ray<Interval>&, int) const;      \
     external template Point<Jet<Interval, 3>> Chart::local_point(const Ray<Jet<Interval, 3>>&, \

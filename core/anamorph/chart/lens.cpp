@@ -171,25 +171,25 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     belongs_to(ocam, Lensed::stereographic, "stereographic");
     set_terms();
     set_shear(plane, parameter);
-    const long double smaller = std::min(plane.half_width, plane.half_height);
+    const DoubleDouble smaller = min(plane.half_width, plane.half_height);
     const bool by_diagonal = model.kind == three_de4 || model.kind == division;
     const bool by_side = model.kind == ptlens || model.kind == poly;
-    const long double unit = by_side              ? smaller
-                             : by_diagonal        ? std::hypot(plane.half_width, plane.half_height)
-                             : model.kind == ocam ? plane.per_x
-                                                  : 1;
+    const DoubleDouble unit = by_side              ? smaller
+                              : by_diagonal        ? hypot(plane.half_width, plane.half_height)
+                              : model.kind == ocam ? plane.per_x
+                                                   : 1;
     // Twice the tangent of half of the angle, in pixels.
     if (model.kind == ocam) m_terms.over[0] = Constant(2 / plane.per_x);
     set_centre(plane);
-    const long double d = m_terms.shift_x.precise(), e = m_terms.shift_y.precise();
+    const DoubleDouble d = m_terms.shift_x.precise(), e = m_terms.shift_y.precise();
     m_terms.unit = unit == 1 ? Constant(1, 0) : Constant(unit);
     m_terms.per_unit = unit == 1 ? Constant(1, 0) : Constant(1 / unit);
     m_terms.has_unit = unit != 1;
-    const auto in_units = [&](long double length) { return static_cast<double>(length / unit); };
+    const auto in_units = [&](DoubleDouble length) { return static_cast<double>(length / unit); };
     const double corner = in_units(farthest_corner(plane, d, e));
     const bool folds = set_ends(corner);
     // The circle in the picture's middle, about the lens's centre.
-    const double asked = m_most_unshear * in_units(smaller + std::hypot(d, e));
+    const double asked = m_most_unshear * in_units(smaller + hypot(d, e));
     if (!(m_terms.observed_end >= asked * (1 - 1e-4))) {
         const auto pixels = [&](double length) {
             return brief(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
@@ -203,15 +203,15 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
 }
 
 /// How far a picture's corners are from the centre of the lens, which is (d, e) from its middle, before they are sheared.
-long double Lens::farthest_corner(const Plane& plane, long double d, long double e) const {
-    const long double x = plane.half_width + std::fabs(d), y = plane.half_height + std::fabs(e);
-    if (!m_terms.sheared) return std::hypot(x, y);
-    long double farthest = 0;
-    for (const long double across : {-plane.half_width - d, plane.half_width - d})
-        for (const long double down : {-plane.half_height - e, plane.half_height - e}) {
-            const Point<long double> corner =
-                lens_formula::sheared(m_terms, Point<long double>{across, down}, m_terms.unshear);
-            farthest = std::max(farthest, std::hypot(corner.x, corner.y));
+DoubleDouble Lens::farthest_corner(const Plane& plane, DoubleDouble d, DoubleDouble e) const {
+    const DoubleDouble x = plane.half_width + fabs(d), y = plane.half_height + fabs(e);
+    if (!m_terms.sheared) return hypot(x, y);
+    DoubleDouble farthest = 0;
+    for (const DoubleDouble across : {-plane.half_width - d, plane.half_width - d})
+        for (const DoubleDouble down : {-plane.half_height - e, plane.half_height - e}) {
+            const Point<DoubleDouble> corner =
+                lens_formula::sheared(m_terms, Point<DoubleDouble>{across, down}, m_terms.unshear);
+            farthest = max(farthest, hypot(corner.x, corner.y));
         }
     return farthest;
 }
@@ -219,16 +219,16 @@ long double Lens::farthest_corner(const Plane& plane, long double d, long double
 /// PanoTools shears about the picture's middle what it has shifted before.
 void Lens::set_centre(const Plane& plane) {
     const std::vector<double>& v = m_model.values;
-    const long double d = v[v.size() - 2] * plane.per_x, e = v[v.size() - 1] * plane.per_y;
+    const DoubleDouble d = v[v.size() - 2] * plane.per_x, e = v[v.size() - 1] * plane.per_y;
     const bool moves = m_terms.sheared && m_model.kind == LensModel::Kind::ptlens;
-    const long double across = moves ? e * m_terms.shear[1].precise() : 0,
-                      down = moves ? d * m_terms.shear[2].precise() : 0;
+    const DoubleDouble across = moves ? e * m_terms.shear[1].precise() : 0,
+                       down = moves ? d * m_terms.shear[2].precise() : 0;
     // Of either part what a Constant may be off, and what the entry is.
-    const auto sum = [](long double own, long double other) {
-        const auto size = static_cast<double>(std::fabs(own) + 4 * std::fabs(other));
-        const double error = 32 * Rounded<long double>::kUnit * size;
+    const auto sum = [](DoubleDouble own, DoubleDouble other) {
+        const auto size = static_cast<double>(fabs(own) + 4 * fabs(other));
+        const double error = 32 * Rounded<DoubleDouble>::kUnit * size;
         // What cancels is known no better than that it is small.
-        return Constant(own + other == 0 ? error * 0x1p-20L : own + other, 2 * error);
+        return Constant(own + other == 0 ? error * 0x1p-20 : own + other, 2 * error);
     };
     m_terms.shift_x = sum(d, across);
     m_terms.shift_y = sum(e, down);
@@ -249,9 +249,9 @@ Lens::Affine Lens::affine_of(const Plane& plane) const {
 /// The matrix, its inverse, and their largest singular values.
 void Lens::set_shear(const Plane& plane, const std::string& parameter) {
     const auto [c, d, e, is_exact] = affine_of(plane);
-    const long double area = c - d * e;
-    if (!(c >= kLeastStretch && c <= kMostStretch && std::fabs(d) <= kMostShear &&
-          std::fabs(e) <= kMostShear && area >= kLeastArea))
+    const DoubleDouble area = c - d * e;
+    if (!(c >= kLeastStretch && c <= kMostStretch && fabs(d) <= kMostShear && fabs(e) <= kMostShear &&
+          area >= kLeastArea))
         throw Error(parameter, m_model.text(),
                     m_model.kind == LensModel::Kind::ocam
                         ? "affine_c must be from " + brief(kLeastStretch) + " to " + brief(kMostStretch) +
@@ -262,17 +262,17 @@ void Lens::set_shear(const Plane& plane, const std::string& parameter) {
                               brief(1 - kLeastArea) + " of their product");
     m_terms.sheared = c != 1 || d != 0 || e != 0;
     if (!m_terms.sheared) return;
-    const long double shear[4] = {1, e, d, c};
-    const long double unshear[4] = {c / area, -e / area, -d / area, 1 / area};
+    const DoubleDouble shear[4] = {1, e, d, c};
+    const DoubleDouble unshear[4] = {c / area, -e / area, -d / area, 1 / area};
     // Two lengths of the plane, each off by what a Constant may be, and a few roundings.
     const double off = is_exact ? 0 : 80;
     // The area is off by two roundings of c + |d e|, and by what d and e are off; an entry over it by one more.
-    const double area_off = static_cast<double>((c + std::fabs(d * e)) / area) * (2 + 2 * off);
-    constexpr double kUnit = Rounded<long double>::kUnit;
+    const double area_off = static_cast<double>((c + fabs(d * e)) / area) * (2 + 2 * off);
+    constexpr double kUnit = Rounded<DoubleDouble>::kUnit;
     double square = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        m_terms.shear[i] = Constant(shear[i], off * kUnit * static_cast<double>(std::fabs(shear[i])));
-        const double size = static_cast<double>(std::fabs(unshear[i]));
+        m_terms.shear[i] = Constant(shear[i], off * kUnit * static_cast<double>(fabs(shear[i])));
+        const double size = static_cast<double>(fabs(unshear[i]));
         m_terms.unshear[i] = Constant(unshear[i], (area_off + off + 2) * (1 + 0x1p-20) * kUnit * size);
         square += m_terms.shear[i].value() * m_terms.shear[i].value();
     }
@@ -302,11 +302,11 @@ void Lens::set_terms() {
         return used;
     };
     if (m_model.kind == ptlens) {
-        const long double a = v[0], b = v[1], c = v[2];
+        const DoubleDouble a = v[0], b = v[1], c = v[2];
         terms.in_radius = true;
         // Three differences, each rounded, of no more than all of them together.
-        const double largest = static_cast<double>(1 + std::fabs(a) + std::fabs(b) + std::fabs(c));
-        terms.over[0] = Constant(1 - a - b - c, 3 * Rounded<long double>::kUnit * largest);
+        const double largest = static_cast<double>(1 + fabs(a) + fabs(b) + fabs(c));
+        terms.over[0] = Constant(1 - a - b - c, 3 * Rounded<DoubleDouble>::kUnit * largest);
         terms.over[1] = exact(v[2]);
         terms.over[2] = exact(v[1]);
         terms.over[3] = exact(v[0]);
@@ -330,9 +330,8 @@ void Lens::set_terms() {
         terms.tangential = terms.mx != 0 || terms.my != 0 || terms.prism;
     } else if (m_model.kind == poly) {
         // A sum, rounded, of no more than both.
-        const long double k0 = v[0];
-        terms.over[0] =
-            Constant(1 + k0, Rounded<long double>::kUnit * static_cast<double>(1 + std::fabs(k0)));
+        const DoubleDouble k0 = v[0];
+        terms.over[0] = Constant(1 + k0, Rounded<DoubleDouble>::kUnit * static_cast<double>(1 + fabs(k0)));
         // Then only r^2 is needed, which is smooth at the centre.
         terms.in_radius = v[1] != 0 || v[3] != 0;
         if (terms.in_radius) {

@@ -195,7 +195,7 @@ class Lens {
   public:
     /// The part of the plane that a picture covers: half its width and height, and the units of the plane per pixel.
     struct Plane {
-        long double half_width, half_height, per_x, per_y;
+        DoubleDouble half_width, half_height, per_x, per_y;
     };
     /// A lens on a chart's plane. Throws Error naming `parameter` where a projection of that kind has no such lens, and where the
     /// lens ends within the largest circle that the picture holds. `projection`: its name.
@@ -229,9 +229,9 @@ class Lens {
 
   private:
     void set_terms();
-    long double farthest_corner(const Plane& plane, long double d, long double e) const;
+    DoubleDouble farthest_corner(const Plane& plane, DoubleDouble d, DoubleDouble e) const;
     struct Affine {
-        long double c = 1, d = 0, e = 0;
+        DoubleDouble c = 1, d = 0, e = 0;
         bool is_exact = true;
     };
     Affine affine_of(const Plane& plane) const;

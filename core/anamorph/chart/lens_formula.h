@@ -180,8 +180,8 @@ template <class T>
 constexpr double unit_of() {
     if constexpr (requires { typename T::Scalar; })
         return unit_of<typename T::Scalar>();
-    else if constexpr (std::numeric_limits<T>::is_specialized)
-        return static_cast<double>(std::numeric_limits<T>::epsilon()) / 2;
+    else if constexpr (std::is_floating_point_v<T> || std::is_same_v<T, DoubleDouble>)
+        return unit_roundoff<T>();
     else
         return 0;
 }

@@ -37,6 +37,11 @@ struct Node {
     friend auto operator<=>(const Node&, const Node&) = default;
 };
 
+/// Are two numbers equal, and zeros of the same sign?
+bool is_same(const DoubleDouble& a, const DoubleDouble& b) {
+    return a == b && std::signbit(a.upper()) == std::signbit(b.upper());
+}
+
 /// Operations without repetitions, operands before what is made of them. Nodes 0 and 1 are x and y.
 class Graph {
   public:
@@ -46,19 +51,19 @@ class Graph {
     Result x() const { return {0}; }
     Result y() const { return {1}; }
     Result number(double value) { return add({StepKind::number, {}, {}, {}, index_of(m_numbers, value)}); }
-    Result constant(long double value) {
+    Result constant(DoubleDouble value) {
         return add({StepKind::constant, {}, {}, {}, index_of(m_constants, value)});
     }
     Result make(StepKind kind, Result a, Result b = {}, Result c = {}) { return add({kind, a, b, c, -1}); }
     Result with_number(StepKind kind, Result a, double value) {
         return add({kind, a, {}, {}, index_of(m_numbers, value)});
     }
-    Result times_constant(Result a, long double value) {
+    Result times_constant(Result a, DoubleDouble value) {
         return add({StepKind::times_constant, a, {}, {}, index_of(m_constants, value)});
     }
     /// The value of a result that is a number, or that is a constant.
     std::optional<double> known_number(Result r) const { return known(r, StepKind::number, m_numbers); }
-    std::optional<long double> known_constant(Result r) const {
+    std::optional<DoubleDouble> known_constant(Result r) const {
         return known(r, StepKind::constant, m_constants);
     }
 
@@ -67,9 +72,8 @@ class Graph {
   private:
     template <class T>
     static int index_of(std::vector<T>& values, T value) {
-        const auto found = std::find_if(values.begin(), values.end(), [&](T other) {
-            return other == value && std::signbit(other) == std::signbit(value);
-        });
+        const auto found =
+            std::find_if(values.begin(), values.end(), [&](T other) { return is_same(other, value); });
         if (found != values.end()) return static_cast<int>(found - values.begin());
         values.push_back(value);
         return static_cast<int>(values.size()) - 1;
@@ -89,7 +93,7 @@ class Graph {
 
     std::vector<Node> m_nodes;
     std::vector<double> m_numbers;
-    std::vector<long double> m_constants;
+    std::vector<DoubleDouble> m_constants;
     std::map<Node, int> m_known;
 };
 
@@ -117,14 +121,13 @@ class Registers {
 inline double key_of(double number) {
     return number;
 }
-inline long double key_of(const Constant& constant) {
+inline DoubleDouble key_of(const Constant& constant) {
     return constant.precise();
 }
 template <class T>
 std::uint8_t place_of(std::vector<T>& values, const T& value) {
-    const auto known = std::find_if(values.begin(), values.end(), [&](const T& other) {
-        return key_of(other) == key_of(value) && std::signbit(key_of(other)) == std::signbit(key_of(value));
-    });
+    const auto known = std::find_if(values.begin(), values.end(),
+                                    [&](const T& other) { return is_same(key_of(other), key_of(value)); });
     if (known != values.end()) return static_cast<std::uint8_t>(known - values.begin());
     if (values.size() == 256) throw Error("needs more than 256 different numbers: must be simpler");
     values.push_back(value);
@@ -203,7 +206,7 @@ class Maker {
     explicit Maker(Graph& graph) : m_graph(graph) {}
 
     Value number(double value) { return everywhere(m_graph.number(value)); }
-    Value constant(long double value) { return everywhere(m_graph.constant(value)); }
+    Value constant(DoubleDouble value) { return everywhere(m_graph.constant(value)); }
     Value x() const { return everywhere(m_graph.x()); }
     Value y() const { return everywhere(m_graph.y()); }
 
@@ -337,7 +340,7 @@ class Maker {
         // A power of two has an exact inverse.
         int exponent = 0;
         if (std::frexp(std::fabs(*y), &exponent) == 0.5) return scaled(a, 1 / *y);
-        return m_graph.times_constant(a, 1 / static_cast<long double>(*y));
+        return m_graph.times_constant(a, 1 / static_cast<DoubleDouble>(*y));
     }
     Result added(Result a, double k) { return k == 0 ? a : m_graph.with_number(StepKind::add_number, a, k); }
     Result scaled(Result a, double k) {
@@ -369,7 +372,7 @@ Value smooth_step(Maker& m, const Value& low, const Value& high, const Value& x)
 }
 /// The cube root of numbers of both signs.
 Value cube_root(Maker& m, const Value& a) {
-    const Value size = m.magnitude(a), third = m.constant(1 / 3.0L);
+    const Value size = m.magnitude(a), third = m.constant(DoubleDouble(1) / 3);
     const Value root = m.power(size, third);
     return m.where(m.choice(m.less(a, m.number(0)), m.negated(root), root), size);
 }
@@ -714,7 +717,7 @@ NamedValues settings_of(Maker& m, const FormulaSetting& setting) {
             {"src_width", {m.number(setting.source.width)}},
             {"src_height", {m.number(setting.source.height)}},
             {"frame", {m.number(setting.frame)}},
-            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+            {"pi", {m.constant(DoubleDouble::pi())}}};
 }
 
 NamedValues names_of(Maker& m, const FormulaSetting& setting) {
@@ -738,8 +741,8 @@ NamedValues names_of(Maker& m, const FormulaSetting& setting) {
 /// The names of pixels of an equirectangular picture of all directions.
 NamedValues names_of(Maker& m, const FormulaSetting& setting, const Size& globe) {
     const auto part = [&](const Value& at, int of) { return m.quotient(at, m.number(of)); };
-    const auto turns = [&](const Value& count, long double whole) {
-        return m.product(count, m.constant(whole * std::numbers::pi_v<long double>));
+    const auto turns = [&](const Value& count, DoubleDouble whole) {
+        return m.product(count, m.constant(whole * DoubleDouble::pi()));
     };
     NamedValues names = settings_of(m, setting);
     names["lon"] = {turns(m.difference(part(m.x(), globe.width), m.number(0.5)), 2)};
@@ -753,14 +756,14 @@ NamedValues names_of(Maker& m, const SurfaceSetting& setting) {
             {"v", {m.difference(m.number(1), m.y())}},
             {"aspect", {m.number(setting.aspect)}},
             {"frame", {m.number(setting.frame)}},
-            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+            {"pi", {m.constant(DoubleDouble::pi())}}};
 }
 
 NamedValues names_of_displacement(Maker& m, double frame) {
     return {{"u", {m.x()}},
             {"v", {m.y()}},
             {"frame", {m.number(frame)}},
-            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+            {"pi", {m.constant(DoubleDouble::pi())}}};
 }
 
 /// By the stereographic projection of the unit sphere from the pole of the other half.
@@ -780,7 +783,7 @@ NamedValues names_of(Maker& m, const SolidSetting& setting) {
             {"own_blue", {m.number(setting.own[2])}},
             {"scale", {m.number(setting.scale)}},
             {"frame", {m.number(setting.frame)}},
-            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+            {"pi", {m.constant(DoubleDouble::pi())}}};
 }
 
 /// What `parse` makes of a text. What is too much for a program is told of the text, too.

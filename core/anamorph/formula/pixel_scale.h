@@ -13,8 +13,8 @@ class PixelScale {
   public:
     PixelScale(const Size& from, const Size& to)
         : m_is_one(from == to),
-          m_x(static_cast<long double>(to.width) / from.width),
-          m_y(static_cast<long double>(to.height) / from.height) {}
+          m_x(static_cast<DoubleDouble>(to.width) / from.width),
+          m_y(static_cast<DoubleDouble>(to.height) / from.height) {}
 
     template <class T>
     Point<T> operator()(const T& x, const T& y) const {

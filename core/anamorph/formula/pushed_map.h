@@ -87,7 +87,7 @@ class PushedMap {
                                       const Local& local) const;
 
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int, Point<Real>& p, int& source_piece) const {
         source_piece = 0;
         return m_sheets.exact(x, y, p);

@@ -37,7 +37,7 @@ constexpr double kJump = 1e-5, kNear = 0x1p-36;
 // Along other lines they become small (source pixels) both ways, and so many are enough to tell.
 constexpr double kSmall = 0x1p-8, kAsWide = 1.5;
 constexpr int kMostTorn = 1 << 15;
-// Chords by which a point in double becomes one in long double: each leaves a quarter of its error of some 2^-40.
+// Chords by which a point in double becomes one in DoubleDouble: each leaves a quarter of its error of some 2^-40.
 constexpr int kPreciseSteps = 16;
 constexpr double kLongestChord = 1e-3;
 
@@ -357,7 +357,7 @@ std::optional<double> PushedSheets::error(const Interval& x, const Interval& y) 
     return has_fold ? std::nullopt : std::optional(error);
 }
 
-template <std::floating_point Real>
+template <RealNumber Real>
 bool PushedSheets::exact(const Real& x, const Real& y, Point<Real>& p) const {
     const Preimages all = preimages(static_cast<double>(x), static_cast<double>(y));
     if (all.count == 0) return false;
@@ -370,7 +370,7 @@ bool PushedSheets::exact(const Real& x, const Real& y, Point<Real>& p) const {
             const Point<Real> step{inverse.a11 * off_x + inverse.a12 * off_y,
                                    inverse.a21 * off_x + inverse.a22 * off_y};
             // Beyond a jump.
-            if (!(std::max(std::fabs(step.x), std::fabs(step.y)) <= kLongestChord)) break;
+            if (!(max(fabs(step.x), fabs(step.y)) <= kLongestChord)) break;
             p.x -= step.x;
             p.y -= step.y;
         }
@@ -378,7 +378,7 @@ bool PushedSheets::exact(const Real& x, const Real& y, Point<Real>& p) const {
     return true;
 }
 template bool PushedSheets::exact(const double&, const double&, Point<double>&) const;
-template bool PushedSheets::exact(const long double&, const long double&, Point<long double>&) const;
+template bool PushedSheets::exact(const DoubleDouble&, const DoubleDouble&, Point<DoubleDouble>&) const;
 
 /// On sheets, by their errors; on folds, pixel by pixel.
 template <class Real>
@@ -397,13 +397,13 @@ double PushedSheets::exact_error(const Interval& x, const Interval& y) const {
         return precise_error(x, y);
 }
 template double PushedSheets::exact_error<double>(const Interval&, const Interval&) const;
-template double PushedSheets::exact_error<long double>(const Interval&, const Interval&) const;
+template double PushedSheets::exact_error<DoubleDouble>(const Interval&, const Interval&) const;
 
-/// Bounds the error of chords in long double from the point in double: each leaves kContraction of its error
+/// Bounds the error of chords in DoubleDouble from the point in double: each leaves kContraction of its error
 /// in a sheet's parameters, and adds |Y| times what rounding makes of the formula there, and that of
 /// positions.
 double PushedSheets::precise_error(const Interval& x, const Interval& y) const {
-    using R = Rounded<long double>;
+    using R = Rounded<DoubleDouble>;
     const double size = double(m_source.width) + m_source.height;
     double most = 0;
     m_tree.each({x.lo, y.lo, x.hi, y.hi}, [&](std::int32_t i) {

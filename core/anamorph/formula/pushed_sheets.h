@@ -34,7 +34,7 @@ class PushedSheets {
     /// over first, of these the lowest, of these the rightmost.
     Preimages preimages(double x, double y) const;
     /// Finds the best source point of a target point. False where there is none.
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, Point<Real>& p) const;
 
     /// Bounds the error of source points in double over a box; none where a fold is near.

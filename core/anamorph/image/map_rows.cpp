@@ -63,20 +63,21 @@ bool is_at_both_ends(const Chart& source, const Point<double>& at, const Point<d
 
 /// The distance from the truth at (x, y); the source's x is counted around one with azimuths.
 double error_of(const Found& used, const BlockMap& map, const Chart& source, double x, double y, int piece) {
-    Point<long double> truth{}, at{used.at.x, used.at.y};
+    Point<DoubleDouble> truth{}, at{used.at.x, used.at.y};
     int true_piece = 0;
     if (!map.truth(x, y, piece, truth, true_piece)) return 0;
     if (!used.seen) return HUGE_VAL;
     // On the edge between two faces of a cube.
     if (true_piece != used.piece) at = source.point(source.ray(at.x, at.y, used.piece), true_piece);
-    long double dx = at.x - truth.x;
-    if (const double turn = source.turn(); turn < HUGE_VAL) dx -= std::round(dx / turn) * turn;
-    const auto distance = static_cast<double>(std::hypot(dx, at.y - truth.y));
+    DoubleDouble dx = at.x - truth.x;
+    if (const double turn = source.turn(); turn < HUGE_VAL)
+        dx -= std::round(static_cast<double>(dx / turn)) * DoubleDouble(turn);
+    const auto distance = static_cast<double>(hypot(dx, at.y - truth.y));
     if (distance < 1 || source.pieces().size() > 1) return distance;
     // The truth may be the other end of a seam.
     const Point<double> mirrored{source.width() - used.at.x, used.at.y};
     if (!is_at_both_ends(source, used.at, mirrored)) return distance;
-    return std::min(distance, static_cast<double>(std::hypot(mirrored.x - truth.x, mirrored.y - truth.y)));
+    return std::min(distance, static_cast<double>(hypot(mirrored.x - truth.x, mirrored.y - truth.y)));
 }
 
 /// Source points as (u, v) of a chart.

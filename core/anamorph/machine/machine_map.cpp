@@ -125,7 +125,7 @@ bool MachineMap::exact(double x, double y, int piece, Point<double>& source_poin
                        int& source_piece) const noexcept {
     return m_exact->exact(x, y, piece, source_point, source_piece);
 }
-bool MachineMap::truth(double x, double y, int piece, Point<long double>& source_point,
+bool MachineMap::truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                        int& source_piece) const noexcept {
     return m_exact->truth(x, y, piece, source_point, source_piece);
 }

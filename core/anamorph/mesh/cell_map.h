@@ -57,7 +57,7 @@ class CellMap {
     Point<Rounded<double>> operator()(const Rounded<double>& x, const Rounded<double>& y,
                                       const Local& local) const;
 
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {
         source_piece = 0;
         const Point<double> at = this->at(static_cast<double>(x), static_cast<double>(y), piece);

@@ -377,7 +377,7 @@ class TriangleMap {
         if (!points || !(magnitude(points->x) < kFarthest && magnitude(points->y) < kFarthest)) return {};
         return points;
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int piece, Point<Real>& p, int& source_piece) const {
         Point<double> at;
         if (!m_plan->exact(static_cast<double>(x), static_cast<double>(y), piece, at, source_piece))

@@ -15,8 +15,8 @@
 namespace anamorph {
 namespace {
 
-// What is made of the points once is made in long double, with a bound of its rounding.
-using Number = Tracked<long double>;
+// What is made of the points once is made in DoubleDouble, with a bound of its rounding.
+using Number = Tracked<DoubleDouble>;
 using Vector = Point<Number>;
 
 Vector operator+(const Vector& a, const Vector& b) {
@@ -116,7 +116,7 @@ void fit_slopes(Affine& plane, const std::vector<Node>& nodes, const std::vector
     }
     const Number determinant = aa * bb - ab * ab;
     const auto trace = (aa + bb).value;
-    if (!(determinant.value > 1e-12L * trace * trace)) return;
+    if (!(determinant.value > 1e-12 * trace * trace)) return;
     const Vector by_a = (ad * bb - bd * ab) * (Number(1) / determinant),
                  by_b = (bd * aa - ad * ab) * (Number(1) / determinant);
     plane.dx = by_a * along.x - by_b * along.y;
@@ -126,7 +126,7 @@ void fit_slopes(Affine& plane, const std::vector<Node>& nodes, const std::vector
 Affine best_affine(const std::vector<Node>& nodes) {
     Affine fit;
     std::vector<std::size_t> all(nodes.size());
-    const Number count(static_cast<long double>(nodes.size()));
+    const Number count(static_cast<DoubleDouble>(nodes.size()));
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         all[i] = i;
         fit.middle = fit.middle + nodes[i].at;
@@ -434,9 +434,9 @@ void add_cubics(const std::vector<Node>& nodes, const Corners& corners, const Si
         const Vector normal{edge.y, -edge.x};
         const Number u = dot(normal, {a.x, b.x}), w = Number(-3) * dot(edge, edge) * one_over, v = -u - w;
         const Node &ni = *e.v[i], &nj = *e.v[j];
-        const Vector wanted = ((ni.dx + nj.dx) * normal.x + (ni.dy + nj.dy) * normal.y) * Number(0.5L);
+        const Vector wanted = ((ni.dx + nj.dx) * normal.x + (ni.dy + nj.dy) * normal.y) * Number(0.5);
         const Vector along = (p[0] + p[3] * Number(2) + p[4]) * u + (p[3] + p[4] * Number(2) + p[1]) * v;
-        p[9] = ((wanted * (Number(4) / Number(3)) - along) * (Number(1) / w) - p[5] - p[6]) * Number(0.5L);
+        p[9] = ((wanted * (Number(4) / Number(3)) - along) * (Number(1) / w) - p[5] - p[6]) * Number(0.5);
     }
     // Across the lines to the middle: each inner point (102 of a corner) is the mean of its neighbours'.
     const Number third = Number(1) / Number(3);

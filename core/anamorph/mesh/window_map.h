@@ -85,7 +85,7 @@ class WindowMap {
     Point<T> operator()(const T& x, const T& y, const Local& local) const {
         return local(x, y);
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int, Point<Real>& p, int& source_piece) const {
         source_piece = 0;
         Point<double> at;

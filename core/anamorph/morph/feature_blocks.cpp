@@ -30,9 +30,9 @@ bool FeatureBlocks::seen(double, double, int) const noexcept {
     return true;
 }
 
-bool FeatureBlocks::truth(double x, double y, int piece, Point<long double>& source_point,
+bool FeatureBlocks::truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                           int& source_piece) const noexcept {
-    source_point = m_map(static_cast<long double>(x), static_cast<long double>(y), shape(piece));
+    source_point = m_map(static_cast<DoubleDouble>(x), static_cast<DoubleDouble>(y), shape(piece));
     source_piece = 0;
     return true;
 }

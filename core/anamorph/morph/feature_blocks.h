@@ -21,7 +21,7 @@ class FeatureBlocks : public BlockMap {
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
     bool seen(double x, double y, int piece) const noexcept override;
-    bool truth(double x, double y, int piece, Point<long double>& source_point,
+    bool truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                int& source_piece) const noexcept override;
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;

@@ -147,7 +147,7 @@ template <class T>
 inline T inverse_power(const T& x, double b) {
     const auto c = constant_part(x);
     const auto value = inverse_power_of_constant(c, b);
-    if constexpr (std::is_floating_point_v<T>)
+    if constexpr (RealNumber<T>)
         return value;
     else
         return T(value) + (x - c) * (-b * value / c);

@@ -29,12 +29,10 @@ namespace anamorph {
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
 
-/// The unit roundoff of Real: half the spacing of its numbers, relative to their magnitude. Where long double has more than the 64 bits
-/// of x86, it counts as no better: bounds decide how a picture is drawn, which is to be the same everywhere.
+/// The unit roundoff of Real: half the spacing of its numbers, relative to their magnitude.
 template <class Real>
 constexpr double unit_roundoff() {
-    constexpr double unit = static_cast<double>(std::numeric_limits<Real>::epsilon() / 2);
-    return unit < 0x1p-64 ? 0x1p-64 : unit;
+    return static_cast<double>(std::numeric_limits<Real>::epsilon() / 2);
 }
 
 }  // namespace anamorph

@@ -145,9 +145,9 @@ Jets<Interval, N> choose(const FourConditions<Certainty>& condition, const Jets<
 
 // --- whole numbers ---
 
-template <std::floating_point T>
-T floor_of(T a) {
-    return std::floor(a);
+template <RealNumber T>
+T floor_of(const T& a) {
+    return floor(a);
 }
 inline Interval floor_of(const Interval& a) {
     return {std::floor(a.lo), std::floor(a.hi)};
@@ -246,8 +246,8 @@ inline bool may_jump(const Interval& y, const Interval& x) {
 template <class T>
 T angle_of(const T& y, const T& x) {
     // There is one zero.
-    if constexpr (std::is_floating_point_v<T>)
-        return std::atan2(y + 0, x + 0);
+    if constexpr (RealNumber<T>)
+        return atan2(T(y + 0), T(x + 0));
     else
         return atan2(y, x);
 }

@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "anamorph/number/double_double.h"
 #include "anamorph/number/interval.h"
 #include "anamorph/number/number.h"
 
@@ -62,7 +63,7 @@ inline const T& constant_part(const Jet<T, N>& a) {
 inline double constant_part(double a) {
     return a;
 }
-inline long double constant_part(long double a) {
+inline DoubleDouble constant_part(const DoubleDouble& a) {
     return a;
 }
 inline const Interval& constant_part(const Interval& a) {
@@ -73,7 +74,7 @@ inline const Interval& constant_part(const Interval& a) {
 inline double lower_end(double a) {
     return a;
 }
-inline long double lower_end(long double a) {
+inline DoubleDouble lower_end(const DoubleDouble& a) {
     return a;
 }
 inline double lower_end(const Interval& a) {

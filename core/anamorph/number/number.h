@@ -14,8 +14,8 @@
 // and names no scalar type. A condition is a bool, or what the number needs in its place: a mask of a vector's
 // lanes, a Certainty of an interval. A branch that would save time is no use to a vector, so there is none.
 //
-// Numbers: double and long double (here), Interval (interval.h), Jet (jet.h), Lanes (lanes.h), four jets at once
-// (number/jets.h). Rounded (rounded.h), which bounds rounding over a box, offers what projections ask for; Tracked (tracked.h)
+// Numbers: float, double and long double (here), DoubleDouble (double_double.h), Interval (interval.h), Jet (jet.h), Lanes (lanes.h),
+// four jets at once (number/jets.h). Rounded (rounded.h), which bounds rounding over a box, offers what projections ask for; Tracked (tracked.h)
 // follows a single evaluation. FormatNumber (number_format.h) is rounded as hardware does. GlslNumber (glsl_number.h) writes a
 // shader. A new one gives the list above in its own namespace and works at once in every formula.
 #pragma once
@@ -32,6 +32,9 @@ namespace anamorph {
 using std::asinh;
 using std::atan2;
 using std::exp;
+using std::fabs;
+using std::floor;
+using std::isfinite;
 using std::log;
 using std::sqrt;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The number a formula is read with to learn what rounding does to it.
 //
-// Rounded<Real> stands for all evaluations of a formula in Real (float, double or long double) over a box: `range`
+// Rounded<Real> stands for all evaluations of a formula in Real (float, double or DoubleDouble) over a box: `range`
 // encloses the exact values there, `error` bounds |computed - exact|. Each operation passes on its operands'
 // errors by its own derivative, largest over the box, and adds its own rounding.
 //
@@ -23,6 +23,7 @@
 #include <type_traits>
 
 #include "anamorph/number/arithmetic.h"
+#include "anamorph/number/double_double.h"
 #include "anamorph/number/interval.h"
 
 namespace anamorph {
@@ -49,7 +50,7 @@ struct Rounded {
     static constexpr double kUnit = unit_roundoff<Real>();
     /// The largest error of libm's functions, relative to the value, as in number/interval.h.
     static constexpr double kLibm = 8 * kUnit;
-    /// The largest error of an underflow. (That of double is above that of long double.)
+    /// The largest error of an underflow. (That of the second part of a DoubleDouble is less.)
     static constexpr double kLeast =
         std::is_same_v<Real, float> ? double{std::numeric_limits<float>::min()} : interval_detail::kSmallest;
     /// The rounding of a coefficient relative to the sum of magnitudes of its products.
@@ -191,7 +192,12 @@ Rounded<Real> sqrt(const Rounded<Real>& f) {
 template <class Real>
 void sin_cos(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& c) {
     using R = Rounded<Real>;
-    const double grown = std::exp(a.radius), moved = a.error * grown * std::exp(a.error);
+    const double grown = std::exp(a.radius);
+    double moved = a.error * grown * std::exp(a.error);
+    if constexpr (std::is_same_v<Real, DoubleDouble>) {
+        // Of larger angles the second part is not asked: then no more is known than that two sines differ by 2 at most.
+        if (!(a.computed_size() <= Real::kLargestAngle)) moved += 2 * grown;
+    }
     const double rest = grown - 1, recurrence = rounded_detail::oscillation_error<Real>(a.radius);
     const auto wave = [&](const Interval& values) {
         return rounded_detail::result<Real>(
@@ -361,25 +367,25 @@ class Constant {
   public:
     Constant() = default;
     /// `value` has an error of at most `error`; the value 0 is taken to be exact.
-    Constant(long double value, double error)
+    Constant(DoubleDouble value, double error)
         : m_precise(value),
           m_value(static_cast<double>(value)),
           m_precise_error(value == 0 ? 0 : error),
           m_error(value == 0 ? 0 : (error + 0x1p-53 * std::fabs(m_value)) * rounded_detail::kUp) {}
-    /// A constant from a few operations and one function of libm in long double: off by 32 units at most.
-    explicit Constant(long double value)
-        : Constant(value, std::fabs(static_cast<double>(value)) * 32 * Rounded<long double>::kUnit) {}
+    /// A constant from a few operations and one function of libm in DoubleDouble: off by 32 units at most.
+    explicit Constant(DoubleDouble value)
+        : Constant(value, std::fabs(static_cast<double>(value)) * 32 * Rounded<DoubleDouble>::kUnit) {}
 
     double value() const { return m_value; }
-    long double precise() const { return m_precise; }
+    DoubleDouble precise() const { return m_precise; }
 
     /// The number that stands for the constant in a formula that is read with T.
     template <class T>
     auto as() const {
-        if constexpr (std::is_same_v<T, long double>)
-            return m_precise;
-        else if constexpr (std::is_same_v<T, Rounded<long double>>) {
-            // The double encloses; the long double computes.
+        if constexpr (std::is_same_v<T, DoubleDouble> || std::is_same_v<T, long double>)
+            return static_cast<T>(m_precise);
+        else if constexpr (std::is_same_v<T, Rounded<DoubleDouble>>) {
+            // The double encloses; the DoubleDouble computes.
             T constant = T::near(m_value, m_error);
             constant.error = m_precise_error;
             return constant;
@@ -388,7 +394,7 @@ class Constant {
     }
 
   private:
-    long double m_precise = 0;
+    DoubleDouble m_precise = 0;
     double m_value = 0, m_precise_error = 0, m_error = 0;
 };
 

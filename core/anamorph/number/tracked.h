@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "anamorph/number/arithmetic.h"
+#include "anamorph/number/number.h"
 
 namespace anamorph {
 
@@ -25,7 +25,7 @@ struct Tracked {
     constexpr Tracked(T exact) : value(exact) {}  // NOLINT: a number is exact
     constexpr Tracked(T computed, double bound) : value(computed), error(bound) {}
 
-    double size() const { return static_cast<double>(std::fabs(value)); }
+    double size() const { return static_cast<double>(fabs(value)); }
     /// The number in double, with its rounding.
     Tracked<double> in_double() const {
         const auto v = static_cast<double>(value);
@@ -34,7 +34,7 @@ struct Tracked {
 
     /// A result whose operands bring `carried` along; the factor covers the rounding of bounds themselves.
     static Tracked result(T value, double carried) {
-        const double v = static_cast<double>(std::fabs(value));
+        const double v = static_cast<double>(fabs(value));
         return {value, (carried + kUnit * v) * (1 + 0x1p-48) + std::numeric_limits<double>::min()};
     }
     friend Tracked operator-(const Tracked& a) { return {-a.value, a.error}; }
@@ -53,7 +53,7 @@ struct Tracked {
         const T q = a.value / b.value;
         const double least = b.size() - b.error;
         if (!(least > 0)) return {q, std::numeric_limits<double>::infinity()};
-        return result(q, (a.error + static_cast<double>(std::fabs(q)) * b.error) / least);
+        return result(q, (a.error + static_cast<double>(fabs(q)) * b.error) / least);
     }
 };
 

@@ -94,10 +94,10 @@ ConcentricMap::ConcentricMap(const Panorama& view, const ConcentricStack& stack,
       m_circle(circle),
       m_whole(whole),
       m_per_depth(inverse_of(stack.depth)) {
-    const long double slit = static_cast<long double>(stack.radius(circle)) * m_per_depth;
+    const DoubleDouble slit = static_cast<DoubleDouble>(stack.radius(circle)) * m_per_depth;
     m_slit = Constant(slit);
     m_least_height = (1 - std::hypot(stack.viewpoint.x, stack.viewpoint.y) * m_per_depth) / 2;
-    const long double root = std::sqrt((1 - slit) * (1 + slit));
+    const DoubleDouble root = sqrt((1 - slit) * (1 + slit));
     m_slit_root = Constant(root);
     m_per_root = Constant(1 / root);
 }
@@ -151,6 +151,6 @@ double ConcentricMap::exact_error(const Interval& x, const Interval& y, int piec
     return m_view.exact_error(slit_ray(ray, m_stack.viewpoint.x, m_stack.viewpoint.y));
 }
 template double ConcentricMap::exact_error<double>(const Interval&, const Interval&, int) const;
-template double ConcentricMap::exact_error<long double>(const Interval&, const Interval&, int) const;
+template double ConcentricMap::exact_error<DoubleDouble>(const Interval&, const Interval&, int) const;
 
 }  // namespace anamorph

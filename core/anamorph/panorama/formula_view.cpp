@@ -99,7 +99,7 @@ double FormulaView::exact_error(const Interval& x, const Interval& y, int, doubl
     return may_be_none(r) ? HUGE_VAL : m_view.exact_error(turned(r));
 }
 template double FormulaView::exact_error<double>(const Interval&, const Interval&, int, double) const;
-template double FormulaView::exact_error<long double>(const Interval&, const Interval&, int, double) const;
+template double FormulaView::exact_error<DoubleDouble>(const Interval&, const Interval&, int, double) const;
 
 void FormulaView::exact_row(double x, double y, int count, double* to_x, double* to_y,
                             std::int32_t* piece) const {

@@ -39,7 +39,7 @@ class FormulaView {
         // The frame of the target's rays is not turned, as that of a flat picture.
         return source().local_point(transform(local.rotation, ray(x, y), m_view.local_error()), local.source);
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int, Point<Real>& source_point, int& source_piece) const {
         if (!(domain(x, y) > 0)) return false;
         const Ray<Real> r = ray(x, y);
@@ -72,7 +72,7 @@ class FormulaView {
         const Point<T> at = m_scale(x, y);
         return read_program<1>(m_rays.domain, at.x, at.y)[0];
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     static bool has_length(const Ray<Real>& r) {
         return r.x != 0 || r.y != 0 || r.z != 0;
     }

@@ -64,6 +64,6 @@ double InverseView::exact_error(const Interval& x, const Interval& y, int piece)
     return error;
 }
 template double InverseView::exact_error<double>(const Interval&, const Interval&, int) const;
-template double InverseView::exact_error<long double>(const Interval&, const Interval&, int) const;
+template double InverseView::exact_error<DoubleDouble>(const Interval&, const Interval&, int) const;
 
 }  // namespace anamorph

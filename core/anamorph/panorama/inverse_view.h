@@ -43,7 +43,7 @@ class InverseView {
         const Point<T> at = m_globe(x, y, local.globe);
         return m_view(at.x, at.y, local.view);
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int piece, Point<Real>& source_point, int& source_piece) const {
         Point<Real> at;
         return m_globe.exact(x, y, piece, at, source_piece) &&

@@ -11,13 +11,12 @@ using Turn = std::array<std::array<Constant, 3>, 3>;
 /// Sine and cosine of an angle in degrees. A turn is taken off, then right angles, all of them exactly: no
 /// angle is too large, and multiples of 90 degrees give 0 and 1.
 struct Angle {
-    long double sin, cos;
+    DoubleDouble sin, cos;
 
     explicit Angle(double degrees) {
-        const long double angle = std::fmod(degrees, 360.0);
-        const long double quarters = std::round(angle / 90);
-        const long double rest = (angle - 90 * quarters) * (std::numbers::pi_v<long double> / 180);
-        const long double s = std::sin(rest), c = std::cos(rest);
+        const double angle = std::fmod(degrees, 360.0), quarters = std::round(angle / 90);
+        DoubleDouble s, c;
+        sin_cos(DoubleDouble(angle - 90 * quarters) * DoubleDouble::pi() / 180, s, c);
         switch (static_cast<int>(quarters) & 3) {
             case 0:
                 sin = s, cos = c;
@@ -39,11 +38,10 @@ Turn turn_of(const Orientation& orientation) {
     const Angle y(orientation.yaw), p(orientation.pitch), r(orientation.roll);
     // A sine or cosine is off by its argument's rounding and libm's, two products and a sum by a unit each:
     // 32 units of each term.
-    const auto sum = [](long double a, long double b) {
-        return Constant(a + b,
-                        static_cast<double>(std::fabs(a) + std::fabs(b)) * 32 * Rounded<long double>::kUnit);
+    const auto sum = [](DoubleDouble a, DoubleDouble b) {
+        return Constant(a + b, static_cast<double>(fabs(a) + fabs(b)) * 32 * Rounded<DoubleDouble>::kUnit);
     };
-    const auto product = [](long double a) { return Constant(a); };
+    const auto product = [](DoubleDouble a) { return Constant(a); };
     return {{{sum(y.cos * r.cos, y.sin * p.sin * r.sin), product(p.cos * r.sin),
               sum(-y.sin * r.cos, y.cos * p.sin * r.sin)},
              {sum(-y.cos * r.sin, y.sin * p.sin * r.cos), product(p.cos * r.cos),
@@ -52,29 +50,29 @@ Turn turn_of(const Orientation& orientation) {
 }
 
 double error_of(const Constant& constant) {
-    return constant.as<Rounded<long double>>().error;
+    return constant.as<Rounded<DoubleDouble>>().error;
 }
 
 /// An entry that is off by `error`; where nothing is left of it, it is known no better than that it is small.
-Constant constant_of(long double value, double error) {
-    return Constant(value == 0 ? error * 0x1p-20L : value, 2 * error);
+Constant constant_of(DoubleDouble value, double error) {
+    return Constant(value == 0 ? error * 0x1p-20 : value, 2 * error);
 }
 
 /// The inverse of the one times the other, by columns: dot products of their columns. Sums of three products are off by
-/// 3 units of each in long double, and by what the entries are off, of which products of two are next to nothing.
+/// 3 units of each in DoubleDouble, and by what the entries are off, of which products of two are next to nothing.
 Turn relative(const Turn& held, const Turn& look) {
     Turn turn;
     for (std::size_t column = 0; column < 3; ++column)
         for (std::size_t row = 0; row < 3; ++row) {
-            long double sum = 0, size = 0, off = 0;
+            DoubleDouble sum = 0, size = 0, off = 0;
             for (std::size_t i = 0; i < 3; ++i) {
                 const Constant &a = held[row][i], &b = look[column][i];
-                const long double product = a.precise() * b.precise();
+                const DoubleDouble product = a.precise() * b.precise();
                 sum += product;
-                size += std::fabs(product);
-                off += std::fabs(a.precise()) * error_of(b) + std::fabs(b.precise()) * error_of(a);
+                size += fabs(product);
+                off += fabs(a.precise()) * error_of(b) + fabs(b.precise()) * error_of(a);
             }
-            const double error = static_cast<double>(off + size * 6 * Rounded<long double>::kUnit);
+            const double error = static_cast<double>(off + size * 6 * Rounded<DoubleDouble>::kUnit);
             turn[column][row] = constant_of(sum, error);
         }
     return turn;
@@ -107,8 +105,8 @@ Turn transferred(const PlaneTransfer& transfer, const Turn& turn) {
     for (std::size_t column = 0; column < 3; ++column)
         for (std::size_t row = 0; row < 3; ++row) {
             const double camera = transfer.camera[row];
-            const auto value = transferred<long double>(camera, normal, turn[column], row);
-            const double error = transferred<Rounded<long double>>(camera, normal, turn[column], row).error;
+            const auto value = transferred<DoubleDouble>(camera, normal, turn[column], row);
+            const double error = transferred<Rounded<DoubleDouble>>(camera, normal, turn[column], row).error;
             all[column][row] = constant_of(value, error);
         }
     return all;
@@ -292,7 +290,7 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece, do
     return exact_error(source_ray(R(x, 0, off), R(y, 0, off), piece));
 }
 template double Panorama::exact_error<double>(const Interval&, const Interval&, int, double) const;
-template double Panorama::exact_error<long double>(const Interval&, const Interval&, int, double) const;
+template double Panorama::exact_error<DoubleDouble>(const Interval&, const Interval&, int, double) const;
 
 template <class Real>
 double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {
@@ -323,6 +321,6 @@ double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {
     return error <= widest ? error : widest;
 }
 template double Panorama::exact_error(const Ray<Rounded<double>>&) const;
-template double Panorama::exact_error(const Ray<Rounded<long double>>&) const;
+template double Panorama::exact_error(const Ray<Rounded<DoubleDouble>>&) const;
 
 }  // namespace anamorph

@@ -99,7 +99,7 @@ class Panorama {
         return m_source.local_point(local_ray(x, y, local), local.source);
     }
 
-    /// Finds the source point of one target point in double or long double, which is what errors are measured against.
+    /// Finds the source point of one target point in double or DoubleDouble, which is what errors are measured against.
     /// False where the target point has no ray, or the source's lens does not see it.
     template <class T>
     bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const {
@@ -112,7 +112,7 @@ class Panorama {
         source_piece = m_source.piece_of(r);
         if (!m_source.pieces_see_all() && !(seen(r, source_piece) > 0)) return false;
         source_point = m_source.point(r, source_piece);
-        return std::isfinite(source_point.x) && std::isfinite(source_point.y);
+        return isfinite(source_point.x) && isfinite(source_point.y);
     }
 
     /// A number that is positive where there is a source point, and changes sign where those end: at the rim of either picture, of a
@@ -145,7 +145,7 @@ class Panorama {
     /// S and T are off in four entries, each by Heading::kError, which is h here, as it counts the angle's error too. A column of
     /// such errors meets one of a rotation, of length 1: each frame brings sqrt 2 h at most, and terms of h^2 are next to nothing.
     /// With u = 2^-53: M's entries are rounded by u of each, which meets a column of S and one of T, of length 1: sqrt 3 u at
-    /// most, as the squares of M's entries add up to 3; the .07 u that long double left meet two entries of each: .14 u. An entry
+    /// most, as the squares of M's entries add up to 3; the .07 u that DoubleDouble left meet two entries of each: .14 u. An entry
     /// of S^T M, three products and two sums, is off by 3 u times the product of two lengths, 1, and of such errors three meet a
     /// column of T with two entries: 3 sqrt 2 u. The other product brings 3 u. That is 2 sqrt 2 h + 10 u at most, about half of
     /// what is returned.

@@ -137,7 +137,7 @@ bool BlockMap::seen(double x, double y, int piece) const noexcept {
     return exact(x, y, piece, p, source_piece);
 }
 
-bool BlockMap::truth(double x, double y, int piece, Point<long double>& source_point,
+bool BlockMap::truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                      int& source_piece) const noexcept {
     Point<double> p{};
     const bool seen = exact(x, y, piece, p, source_piece);
@@ -148,7 +148,7 @@ bool BlockMap::truth(double x, double y, int piece, Point<long double>& source_p
 bool BlockMap::exact(const Block& block, double x, double y, Point<double>& source_point,
                      int& source_piece) const noexcept {
     if (!block.precise) return exact(x, y, block.piece, source_point, source_piece);
-    Point<long double> p{};
+    Point<DoubleDouble> p{};
     const bool seen = truth(x, y, block.piece, p, source_piece);
     source_point = {static_cast<double>(p.x), static_cast<double>(p.y)};
     return seen;

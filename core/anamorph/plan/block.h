@@ -41,7 +41,7 @@ struct Block {
 
     Box box;
     Kind kind = Kind::exact;
-    /// Are exact blocks evaluated in long double, bicubic and computed ones in double (BlockMap::exact_rows)?
+    /// Are exact blocks evaluated in DoubleDouble, bicubic and computed ones in double (BlockMap::exact_rows)?
     bool precise = false;
     int piece = 0;         ///< the piece of the target, which also says the layer (BlockMap)
     int source_piece = 0;  ///< the piece of the source; not set for exact blocks and those outside
@@ -179,7 +179,7 @@ class BlockMap {
     /// Does exact() find a source point?
     virtual bool seen(double x, double y, int piece) const noexcept;
     /// Finds the source point as precisely as the map can, as the reference for measuring errors; in double by default.
-    virtual bool truth(double x, double y, int piece, Point<long double>& source_point,
+    virtual bool truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                        int& source_piece) const noexcept;
     /// Finds the source point of a target point of an exact block, in the block's precision. False where there is none.
     bool exact(const Block& block, double x, double y, Point<double>& source_point,

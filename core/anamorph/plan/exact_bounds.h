@@ -12,15 +12,15 @@ namespace anamorph::plan_detail {
 
 // The precision to which rounding needs to be known where every pixel is exact (source pixels).
 inline constexpr double kExactGoal = 1e-4;
-// The most exact pixels of a box that is read in long double where that keeps the tolerance; larger ones are
+// The most exact pixels of a box that is read in DoubleDouble where that keeps the tolerance; larger ones are
 // halved first.
 inline constexpr int kPrecisePixels = 64;
-// The largest gain of precision by long double: 11 bits less those by which constants are known worse.
+// The largest gain of precision by DoubleDouble: 11 bits less those by which constants are known worse.
 inline constexpr double kPreciseGain = 512;
 // The factor up to which bounds above the tolerance are alike.
 inline constexpr double kAlike = 4;
 
-/// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
+/// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need DoubleDouble.
 template <FormulaMap Map>
 class ExactBounds {
   public:
@@ -36,7 +36,7 @@ class ExactBounds {
             pixels == 1 || (pixels <= kPrecisePixels && block.bound <= kPreciseGain * m_goal);
         if (!(block.bound <= m_goal) && may_help) {
             block.precise = true;
-            block.bound = bound_of<long double>(block, x, y);
+            block.bound = bound_of<DoubleDouble>(block, x, y);
         }
         if (block.bound <= m_goal || pixels == 1)
             m_blocks.push_back(block);

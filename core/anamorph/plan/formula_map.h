@@ -52,8 +52,8 @@ double kept_error(const Point<Rounded<Real>>& p) {
 /// centres at + 0.5. `Local` is where the formula is read: what it needs to know about a neighbourhood of a
 /// point, so that it is smooth there.
 template <class Map>
-concept FormulaMap = requires(const Map& map, const typename Map::Local& local, double a, long double b,
-                              const Interval& x, Point<double>& p, Point<long double>& q, int piece) {
+concept FormulaMap = requires(const Map& map, const typename Map::Local& local, double a, DoubleDouble b,
+                              const Interval& x, Point<double>& p, Point<DoubleDouble>& q, int piece) {
     { map.target_size() } -> std::same_as<Size>;
     { map.source_size() } -> std::same_as<Size>;
     { map.target_pieces() } -> std::same_as<std::vector<Box>>;
@@ -76,7 +76,7 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     /// source point; infinite where it is not certain that there is one. A fourth parameter, where there is one, is how far the
     /// coordinates that exact() is given are off in each way; the box holds those and where they belong.
     { map.template exact_error<double>(x, x, piece) } -> std::same_as<double>;
-    { map.template exact_error<long double>(x, x, piece) } -> std::same_as<double>;
+    { map.template exact_error<DoubleDouble>(x, x, piece) } -> std::same_as<double>;
 };
 
 /// The map near the middle of a block: the source point there, and a bound of the error of the source points of its
@@ -148,12 +148,12 @@ class PlaneMap {
         const Interval in = formula().inside(x, y);
         return in.lo > 0 ? Cover::inside : in.hi <= 0 ? Cover::outside : Cover::mixed;
     }
-    template <std::floating_point Real>
+    template <RealNumber Real>
     bool exact(const Real& x, const Real& y, int, Point<Real>& p, int& source_piece) const {
         source_piece = 0;
         if (!(formula().inside(x, y) > 0)) return false;
         p = formula().source_point(x, y);
-        return std::isfinite(p.x) && std::isfinite(p.y);
+        return isfinite(p.x) && isfinite(p.y);
     }
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int, double off = 0) const {

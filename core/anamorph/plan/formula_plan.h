@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blocks of a map that is one formula: polynomials for the source point with a proven bound of their
 // error, split where the bound exceeds the tolerance, exact where no block holds it. Exact pixels have a bound
-// too: that of their rounding, in double, or where that is not enough in long double.
+// too: that of their rounding, in double, or where that is not enough in DoubleDouble.
 //
 // A map's plans are compiled once: the header of its plan declares `extern template class FormulaPlan<Map>`,
 // and one source file includes plan/formula_plan_impl.h and instantiates it. See panorama/panorama_plan.h.
@@ -58,7 +58,7 @@ class FormulaPlan : public BlockMap {
 
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
-    bool truth(double x, double y, int piece, Point<long double>& source_point,
+    bool truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     bool is_smooth_in_pixels() const noexcept override { return true; }

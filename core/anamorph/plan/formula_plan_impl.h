@@ -74,9 +74,9 @@ bool FormulaPlan<Map>::exact(double x, double y, int piece, Point<double>& sourc
 }
 
 template <class Map>
-bool FormulaPlan<Map>::truth(double x, double y, int piece, Point<long double>& source_point,
+bool FormulaPlan<Map>::truth(double x, double y, int piece, Point<DoubleDouble>& source_point,
                              int& source_piece) const noexcept {
-    return m_map.exact(static_cast<long double>(x), static_cast<long double>(y), piece, source_point,
+    return m_map.exact(static_cast<DoubleDouble>(x), static_cast<DoubleDouble>(y), piece, source_point,
                        source_piece);
 }
 

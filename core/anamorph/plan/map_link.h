@@ -78,9 +78,9 @@ class MapLink : public link_detail::Reads<link_detail::PlanNumbers> {
     virtual Cover cover(const Interval& x, const Interval& y, int piece, const LinkPlace& place,
                         bool across_seam) const = 0;
     virtual bool exact(double x, double y, int piece, Point<double>& p, int& source_piece) const = 0;
-    virtual bool exact(long double x, long double y, int piece, Point<long double>& p,
+    virtual bool exact(DoubleDouble x, DoubleDouble y, int piece, Point<DoubleDouble>& p,
                        int& source_piece) const = 0;
-    /// Bounds the error of source points that exact() finds in double or long double from points of a box, which are
+    /// Bounds the error of source points that exact() finds in double or DoubleDouble from points of a box, which are
     /// themselves off by up to `off` and lie in the box with where they belong. As FormulaMap's exact_error else.
     virtual double exact_error(const Interval& x, const Interval& y, int piece, double off,
                                bool in_long_double) const = 0;
@@ -162,13 +162,13 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
     bool exact(double x, double y, int piece, Point<double>& p, int& source_piece) const override {
         return m_map.exact(x, y, piece, p, source_piece);
     }
-    bool exact(long double x, long double y, int piece, Point<long double>& p,
+    bool exact(DoubleDouble x, DoubleDouble y, int piece, Point<DoubleDouble>& p,
                int& source_piece) const override {
         return m_map.exact(x, y, piece, p, source_piece);
     }
     double exact_error(const Interval& x, const Interval& y, int piece, double off,
                        bool in_long_double) const override {
-        return in_long_double ? error_in<long double>(x, y, piece, off) : error_in<double>(x, y, piece, off);
+        return in_long_double ? error_in<DoubleDouble>(x, y, piece, off) : error_in<double>(x, y, piece, off);
     }
     Jacobian jacobian(double x, double y, int piece) const override {
         if constexpr (requires { m_map.jacobian(x, y, piece); }) {

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "anamorph/number/portable.h"
 
 namespace anamorph {
 namespace {
@@ -75,7 +76,7 @@ struct DerivativeCells::Cell {
 };
 
 std::size_t DerivativeCells::Place::hash() const {
-    const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
+    const auto bits = [](double v) { return bit_cast<std::uint64_t>(v); };
     // Neighbours are to differ in the lower bits.
     const std::uint64_t sum =
         static_cast<std::uint64_t>(static_cast<std::int64_t>(column)) * 0x9E3779B97F4A7C15u +

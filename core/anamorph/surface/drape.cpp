@@ -257,16 +257,16 @@ glm::dvec3 Drape::normal(const Spot& spot) const {
 
 /// How far the point that is drawn at a pixel is seen from its centre.
 double Drape::landing_error(const Spot& spot, int x, int y) const {
-    const std::array<long double, 3> p = m_surface->tree.surface().truth(spot.u, spot.v);
+    const std::array<DoubleDouble, 3> p = m_surface->tree.surface().truth(spot.u, spot.v);
     const Camera& camera = m_map->camera();
-    long double seen[3];
+    DoubleDouble seen[3];
     for (int i = 0; i < 3; ++i)
         seen[i] = camera.matrix()[0][i] * p[0] + camera.matrix()[1][i] * p[1] + camera.matrix()[2][i] * p[2] +
                   camera.offset()[i];
-    const long double scale = camera.focal() / (camera.perspective() ? seen[2] : 1);
-    const long double dx = seen[0] * scale + m_map->width() / 2.0L - (x + 0.5L),
-                      dy = seen[1] * scale + m_map->height() / 2.0L - (y + 0.5L);
-    return static_cast<double>(std::hypot(dx, dy));
+    const DoubleDouble scale = camera.focal() / (camera.perspective() ? seen[2] : 1);
+    const DoubleDouble dx = seen[0] * scale + m_map->width() / 2.0 - (x + 0.5),
+                       dy = seen[1] * scale + m_map->height() / 2.0 - (y + 0.5);
+    return static_cast<double>(hypot(dx, dy));
 }
 
 void Drape::put_values(const Spot& spot, int x, int y, float* to) const {

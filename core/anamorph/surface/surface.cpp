@@ -229,14 +229,14 @@ class SurfacePart {
   public:
     virtual ~SurfacePart() = default;
     virtual SurfacePoint<double> point(const double& u, const double& v) const = 0;
-    virtual SurfacePoint<long double> point(const long double& u, const long double& v) const = 0;
+    virtual SurfacePoint<DoubleDouble> point(const DoubleDouble& u, const DoubleDouble& v) const = 0;
     virtual SurfacePoint<Interval> point(const Interval& u, const Interval& v) const = 0;
     virtual SurfacePoint<Jet<double, 1>> point(const Jet<double, 1>& u, const Jet<double, 1>& v) const = 0;
     virtual SurfacePoint<Jet<Interval, 2>> point(const Jet<Interval, 2>& u,
                                                  const Jet<Interval, 2>& v) const = 0;
     // The unit normals, of parts that has_smooth_normals() allows; (0, 0, 0) of others.
     virtual SurfacePoint<double> normal(const double& u, const double& v) const = 0;
-    virtual SurfacePoint<long double> normal(const long double& u, const long double& v) const = 0;
+    virtual SurfacePoint<DoubleDouble> normal(const DoubleDouble& u, const DoubleDouble& v) const = 0;
     virtual SurfacePoint<Interval> normal(const Interval& u, const Interval& v) const = 0;
     virtual SurfacePoint<Jet<double, 1>> normal(const Jet<double, 1>& u, const Jet<double, 1>& v) const = 0;
     virtual SurfacePoint<Jet<Interval, 2>> normal(const Jet<Interval, 2>& u,
@@ -251,7 +251,7 @@ class ReadPart final : public SurfacePart {
     SurfacePoint<double> point(const double& u, const double& v) const override {
         return m_reader.read(u, v);
     }
-    SurfacePoint<long double> point(const long double& u, const long double& v) const override {
+    SurfacePoint<DoubleDouble> point(const DoubleDouble& u, const DoubleDouble& v) const override {
         return m_reader.read(u, v);
     }
     SurfacePoint<Interval> point(const Interval& u, const Interval& v) const override {
@@ -266,7 +266,7 @@ class ReadPart final : public SurfacePart {
     }
 
     SurfacePoint<double> normal(const double& u, const double& v) const override { return normal_at(u, v); }
-    SurfacePoint<long double> normal(const long double& u, const long double& v) const override {
+    SurfacePoint<DoubleDouble> normal(const DoubleDouble& u, const DoubleDouble& v) const override {
         return normal_at(u, v);
     }
     SurfacePoint<Interval> normal(const Interval& u, const Interval& v) const override {
@@ -449,9 +449,9 @@ class SummedSurface final : public DrapedSurface {
         const auto part = [&](int i) { return glm::dvec3(p.x.c[i], p.y.c[i], p.z.c[i]); };
         return {part(0), part(1), part(2)};
     }
-    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
-        SurfacePoint<long double> p = sum_of_parts(u, v);
-        const Seen<long double> seen = seen_at(p, u, v);
+    std::array<DoubleDouble, 3> truth(DoubleDouble u, DoubleDouble v) const noexcept override {
+        SurfacePoint<DoubleDouble> p = sum_of_parts(u, v);
+        const Seen<DoubleDouble> seen = seen_at(p, u, v);
         for (const Deformation& d : m_deformations) p = moved(p, d, u, v, seen);
         return {p.x, p.y, p.z};
     }

@@ -53,7 +53,7 @@ class DrapedSurface {
     }
     virtual SurfaceFrame frame(double u, double v) const noexcept = 0;
     /// The position as exactly as it is known: errors are measured against it.
-    virtual std::array<long double, 3> truth(long double u, long double v) const noexcept = 0;
+    virtual std::array<DoubleDouble, 3> truth(DoubleDouble u, DoubleDouble v) const noexcept = 0;
     /// Encloses the Taylor coefficients at every point of the box that is not missing; those of the second degree wherever
     /// they exist. Derivatives may be infinite, and say nothing then.
     virtual SurfaceRange range(const Interval& u, const Interval& v) const noexcept = 0;

@@ -30,6 +30,7 @@ using CompositeMapper = vtkCompositePolyDataMapper2;
 namespace {
 
 using anamorph::Chart;
+using anamorph::DoubleDouble;
 using anamorph::Point;
 using anamorph::Projection;
 using anamorph::Projector;
@@ -73,10 +74,18 @@ int differences(const std::vector<Colour>& a, const std::vector<Colour>& b) {
     return count;
 }
 
+Ray<DoubleDouble> in_pairs(const Ray<long double>& ray) {
+    return {DoubleDouble(ray.x), DoubleDouble(ray.y), DoubleDouble(ray.z)};
+}
+Point<long double> point_of(const Chart& chart, const Ray<long double>& ray, int piece) {
+    const Point<DoubleDouble> p = chart.point(in_pairs(ray), piece);
+    return {static_cast<long double>(p.x), static_cast<long double>(p.y)};
+}
+
 /// The larger of the distances across and down from a texel's middle to where a ray meets the panorama.
 long double distance(const Chart& chart, const Ray<long double>& ray, const std::array<int, 2>& place,
                      int piece) {
-    const Point<long double> truth = chart.point(ray, piece);
+    const Point<long double> truth = point_of(chart, ray, piece);
     long double across = std::fabs(place[0] + 0.5L - truth.x);
     if (chart.closed()) across = std::min(across, std::fabs(chart.width() - across));
     return std::max(across, std::fabs(place[1] + 0.5L - truth.y));
@@ -88,7 +97,7 @@ long double least_distance(const Chart& chart, const Ray<long double>& ray, cons
         const glm::dvec3& f = chart.pieces()[static_cast<std::size_t>(piece)].toward;
         return (ray.x * f.x + ray.y * f.y + ray.z * f.z) / std::hypot(ray.x, ray.y, ray.z);
     };
-    const int first = chart.piece_of(ray);
+    const int first = chart.piece_of(in_pairs(ray));
     long double least = HUGE_VALL;
     for (int p = 0; p < static_cast<int>(chart.pieces().size()); ++p)
         if (along(p) > along(first) - 1e-6L) least = std::min(least, distance(chart, ray, place, p));
@@ -98,8 +107,8 @@ long double least_distance(const Chart& chart, const Ray<long double>& ray, cons
 /// How far inside a panorama a ray is, in texels; negative outside.
 long double texels_within(const Chart& chart, const Ray<long double>& ray) {
     if (chart.pieces().size() > 1) return HUGE_VALL;
-    if (!(chart.sees(ray) > 0)) return -HUGE_VALL;
-    const Point<long double> p = chart.point(ray, 0);
+    if (!(chart.sees(in_pairs(ray)) > 0)) return -HUGE_VALL;
+    const Point<long double> p = point_of(chart, ray, 0);
     const long double down = std::min(p.y, chart.height() - p.y);
     return chart.closed() ? down : std::min({p.x, chart.width() - p.x, down});
 }
@@ -194,7 +203,7 @@ long double worst_of_waves(const Room& room, const std::vector<Colour>& picture,
         for (int i = 0; i < Room::kWidth; ++i) {
             const Ray<long double> ray = room.ray(projector, i, j);
             const Point<long double> truth =
-                projector.panorama().point(ray, projector.panorama().piece_of(ray));
+                point_of(projector.panorama(), ray, projector.panorama().piece_of(in_pairs(ray)));
             const double at[2] = {static_cast<double>(truth.x), static_cast<double>(truth.y)};
             for (std::size_t k = 0; k < 2; ++k) {
                 const double place = std::fmod(at[k], 30);
@@ -290,7 +299,7 @@ TEST(VtkProjectionShader, AgreesWithTheFilter) {
     Room room;
     room.look({20, 10, 15});
     const auto exact = [&](int i, int j) {
-        const Point<long double> truth = chart.point(room.ray(core, i, j), 0);
+        const Point<long double> truth = point_of(chart, room.ray(core, i, j), 0);
         return interpolated(chart, {static_cast<double>(truth.x), static_cast<double>(truth.y)});
     };
     vtkNew<vtkAnamorphProjectionShader> shader;

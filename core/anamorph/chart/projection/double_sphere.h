@@ -9,14 +9,14 @@ struct DoubleSphere : Eucm {
 
     /// The angle t whose ray is seen at the angle u from behind, sin(t - u) = xi sin u, at the end of the angles u.
     static double most_fov(const FieldOfView& most, const Setting& s) {
-        long double sine, cosine;
+        DoubleDouble sine, cosine;
         end_of_angles(s, sine, cosine);
-        return below(most, std::atan2(sine, cosine) + std::asin(s.distance.d * sine));
+        return below(most, atan2(sine, cosine) + asin(s.distance.d * sine));
     }
-    static long double width(long double degrees, const Setting& s) {
+    static DoubleDouble width(DoubleDouble degrees, const Setting& s) {
         return span<DoubleSphere>(degrees, s).value;
     }
-    static double width_units(long double degrees, const Setting& s) {
+    static double width_units(DoubleDouble degrees, const Setting& s) {
         return span<DoubleSphere>(degrees, s).units;
     }
 

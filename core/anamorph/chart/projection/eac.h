@@ -32,6 +32,5 @@ struct Eac : CubeFamily {
     }
 
   private:
-    static inline const Constant kEighth{std::numbers::pi_v<long double> / 4},
-        kPerEighth{4 / std::numbers::pi_v<long double>};
+    static inline const Constant kEighth{DoubleDouble::pi() / 4}, kPerEighth{4 / DoubleDouble::pi()};
 };

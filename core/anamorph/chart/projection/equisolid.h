@@ -6,9 +6,7 @@ struct Equisolid : AxisFamily {
     static constexpr std::string_view alias = "lambert";
     static double diameter(const Setting&) { return 4; }
 
-    static long double width(long double degrees, const Setting&) {
-        return 4 * std::sin(degrees / 4 * kDegree);
-    }
+    static DoubleDouble width(DoubleDouble degrees, const Setting&) { return 4 * sine_of(degrees / 4); }
 
     template <class T>
     static T inside(const Point<T>& p, const Setting&) {

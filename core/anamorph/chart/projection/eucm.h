@@ -17,20 +17,20 @@ struct Eucm : AnyProjection {
         return -(std::fma(cosine, under, -over) > 0 ? std::nextafter(cosine, 0.0) : cosine);
     }
     /// The stretched angle's sine and cosine at that end: 1 + cos = |2 alpha - 1| over the larger of alpha and 1 - alpha.
-    static void end_of_angles(const Setting& s, long double& sine, long double& cosine) {
-        const long double alpha = s.distance.e, under = std::max(alpha, 1 - alpha);
-        const long double more = std::fabs(2 * alpha - 1) / under;
+    static void end_of_angles(const Setting& s, DoubleDouble& sine, DoubleDouble& cosine) {
+        const DoubleDouble alpha = s.distance.e, under = max(alpha, 1 - alpha);
+        const DoubleDouble more = fabs(2 * alpha - 1) / under;
         cosine = more - 1;
-        sine = std::sqrt(more * (2 - more));
+        sine = sqrt(more * (2 - more));
     }
-    /// The largest field of view, no more than it is: long double is off by less than the double pi and the quotient.
+    /// The largest field of view, no more than it is: DoubleDouble is off by less than the double pi and the quotient.
     static double most_fov(const FieldOfView& most, const Setting& s) {
-        long double sine, cosine;
+        DoubleDouble sine, cosine;
         end_of_angles(s, sine, cosine);
-        return below(most, std::atan2(sine, std::sqrt(static_cast<long double>(s.distance.d)) * cosine));
+        return below(most, atan2(sine, sqrt(DoubleDouble(s.distance.d)) * cosine));
     }
-    static long double width(long double degrees, const Setting& s) { return span<Eucm>(degrees, s).value; }
-    static double width_units(long double degrees, const Setting& s) { return span<Eucm>(degrees, s).units; }
+    static DoubleDouble width(DoubleDouble degrees, const Setting& s) { return span<Eucm>(degrees, s).value; }
+    static double width_units(DoubleDouble degrees, const Setting& s) { return span<Eucm>(degrees, s).units; }
     static double largest_tangent(double half_width, double half_height) {
         return std::max(half_width, half_height);
     }
@@ -58,9 +58,9 @@ struct Eucm : AnyProjection {
     }
 
   protected:
-    /// Twice an angle in degrees, in double no more than it is in long double, and at most what is allowed.
-    static double below(const FieldOfView& most, long double angle) {
-        // The conversion to double and the product are off by half of 2^-52 each, and long double by far less.
+    /// Twice an angle in degrees, in double no more than it is in DoubleDouble, and at most what is allowed.
+    static double below(const FieldOfView& most, DoubleDouble angle) {
+        // The conversion to double and the product are off by half of 2^-52 each, and DoubleDouble by far less.
         constexpr double kBelow = 1 - 4 * 0x1p-52;
         return std::min(most.most, static_cast<double>(2 * angle / kDegree) * kBelow);
     }

@@ -42,11 +42,11 @@ struct Distance {
     Distance(double distance = 1, double second = kSecond)  // NOLINT: the number is the distance
         : d(distance),
           e(second),
-          per_sum(1 / (1.0L + d)),
-          less_square((1.0L - d) * (1.0L + d)),
-          rest(1.0L - e),
-          difference(1 - 2.0L * e),
-          product(e * (1.0L - e)) {}
+          per_sum(1 / (1 + DoubleDouble(d))),
+          less_square((1 - DoubleDouble(d)) * (1 + DoubleDouble(d))),
+          rest(1 - DoubleDouble(e)),
+          difference(1 - 2 * DoubleDouble(e)),
+          product(e * (1 - DoubleDouble(e))) {}
 
     /// The second number unless it is said.
     static constexpr double kSecond = 0.5;

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The members that projections of one family share. There is no include guard and no namespace, as list.h says.
 
-inline constexpr long double kDegree = std::numbers::pi_v<long double> / 180;
+/// A degree, off by less than 2^-113.
+inline constexpr DoubleDouble kDegree{0x1.1df46a2529d39p-6, 0x1.5c1d8becdd291p-62};
 
+/// The sine of an angle in degrees.
+inline DoubleDouble sine_of(const DoubleDouble& degrees) {
+    DoubleDouble sine, cosine;
+    sin_cos(degrees * kDegree, sine, cosine);
+    return sine;
+}
 /// The tangent of an angle of 0 to 90 degrees. Near 90 it is found from 90 degrees less the angle, which is exact.
-inline long double tan_of(long double degrees) {
-    return degrees > 45 ? 1 / std::tan((90 - degrees) * kDegree) : std::tan(degrees * kDegree);
+inline DoubleDouble tan_of(const DoubleDouble& degrees) {
+    return degrees > 45 ? 1 / tan((90 - degrees) * kDegree) : tan(degrees * kDegree);
 }
 
 /// The defaults of all projections. A projection has to define `ray` and `point`:
@@ -37,15 +44,15 @@ struct AnyProjection {
     static constexpr bool has_pole_rows = false;
 
     /// The width of the plane that a field of view in degrees covers.
-    static long double width(long double degrees, const Setting&) { return degrees * kDegree; }
-    /// The largest error of the pixels per unit of the plane, and of their inverse, in units of long double (2^-64 of them).
+    static DoubleDouble width(DoubleDouble degrees, const Setting&) { return degrees * kDegree; }
+    /// The largest error of the pixels per unit of the plane, and of their inverse, in units of DoubleDouble (2^-64 of them).
     ///
     /// kDegree is off by 2, of pi and of the quotient; an angle, a whole fraction of `degrees` times that, by 3. A sine of 0 to
     /// 90 degrees changes by x cot x, at most 1, of its angle's relative change, and libm adds 8 (Rounded::kLibm): 11. A tangent
     /// of 0 to 45 degrees changes by 2 x / sin 2x, at most pi / 2, of it: 5 + 8, and 1 for 1 over it: 14. Widths are such an
     /// angle, sine or tangent times a power of two (a constant is exact), so they are off by 14 at most. Rows between pixel
     /// centres take most of what follows, a product and two quotients, and 1 more for the inverse: 18. Which is doubled nearly.
-    static double width_units(long double, const Setting&) { return 32; }
+    static double width_units(DoubleDouble, const Setting&) { return 32; }
     /// The width of the whole plane of a projection that shows the direction straight behind all around its rim.
     static double diameter(const Setting&) { return HUGE_VAL; }
     /// The largest tangent of a ray in the corner of a plane of twice this size; 0: there is no limit.
@@ -110,7 +117,7 @@ struct FlatFamily : AnyProjection {
 struct CubeFamily : FlatFamily {
     static constexpr FieldOfView fov{90, 90, false, true};
 
-    static long double width(long double, const Setting&) { return 2; }
+    static DoubleDouble width(DoubleDouble, const Setting&) { return 2; }
 
     template <class T>
     static T sees(const Ray<T>& r, const Setting&) {
@@ -118,17 +125,17 @@ struct CubeFamily : FlatFamily {
     }
 };
 
-/// A number of which long double has a value that is off by `error` at most.
-inline Rounded<long double> known_to(long double value, double error) {
+/// A number of which DoubleDouble has a value that is off by `error` at most.
+inline Rounded<DoubleDouble> known_to(DoubleDouble value, double error) {
     const double at = static_cast<double>(value);
-    auto r = Rounded<long double>::near(at, error + 0x1p-53 * std::fabs(at));
+    auto r = Rounded<DoubleDouble>::near(at, error + 0x1p-53 * std::fabs(at));
     r.error = error;
     return r;
 }
 
 /// A width of the plane, and width_units() of it (AnyProjection).
 struct Span {
-    long double value;
+    DoubleDouble value;
     double units;
 };
 /// The width by the point of the ray half of `degrees` to the right, for projections with an axis that know no better. The angle, of
@@ -136,15 +143,17 @@ struct Span {
 /// changes by at most as much of itself as its angle does, and the cosine by 3 pi / 2 + 8, below 18. What follows is read with
 /// its rounding; 4 units are for what is computed from the width, and all of it is doubled nearly.
 template <class P>
-Span span(long double degrees, const Setting& s) {
-    using R = Rounded<long double>;
-    const long double half = degrees / 2;
+Span span(DoubleDouble degrees, const Setting& s) {
+    using R = Rounded<DoubleDouble>;
+    const DoubleDouble half = degrees / 2;
     const bool behind = half > 90;
-    const long double angle = (behind ? 180 - half : half) * kDegree;
-    const long double sine = std::sin(angle), cosine = behind ? -std::cos(angle) : std::cos(angle);
+    const DoubleDouble angle = (behind ? 180 - half : half) * kDegree;
+    DoubleDouble sine, cosine;
+    sin_cos(angle, sine, cosine);
+    if (behind) cosine = -cosine;
     const Ray<R> bound{known_to(sine, 11 * R::kUnit * static_cast<double>(sine)), R(0),
                        known_to(cosine, 18 * R::kUnit)};
-    const long double value = 2 * P::point(Ray<long double>{sine, 0, cosine}, s).x;
+    const DoubleDouble value = 2 * P::point(Ray<DoubleDouble>{sine, 0, cosine}, s).x;
     const double units = 2 * P::point(bound, s).x.error / (R::kUnit * static_cast<double>(value));
     return {value, 1.8 * (units + 4)};
 }

@@ -35,5 +35,5 @@ struct Fisheye : AxisFamily {
     }
 
   private:
-    static inline const Constant kHalfTurn{std::numbers::pi_v<long double>};
+    static inline const Constant kHalfTurn{DoubleDouble::pi()};
 };

@@ -5,9 +5,7 @@
 struct Hammer : CylinderFamily {
     static constexpr bool closes = false;
 
-    static long double width(long double degrees, const Setting&) {
-        return 8 * std::sin(degrees / 8 * kDegree);
-    }
+    static DoubleDouble width(DoubleDouble degrees, const Setting&) { return 8 * sine_of(degrees / 8); }
     static double aspect(double fov) {
         return 2 * std::sqrt(2.0) / (8 * std::sin(fov * std::numbers::pi / 1440));
     }

@@ -8,7 +8,7 @@ struct Octahedral : AnyProjection {
 
     static constexpr double face_centre = 0.5;
 
-    static long double width(long double, const Setting&) { return 1; }
+    static DoubleDouble width(DoubleDouble, const Setting&) { return 1; }
     static std::vector<Face> faces() {
         const glm::dmat3 axes(1);
         return {{axes, 0, 0, {-1, -1, 0}},

@@ -4,9 +4,7 @@
 struct Orthographic : AxisFamily {
     static constexpr FieldOfView fov{180, 180};
 
-    static long double width(long double degrees, const Setting&) {
-        return 2 * std::sin(degrees / 2 * kDegree);
-    }
+    static DoubleDouble width(DoubleDouble degrees, const Setting&) { return 2 * sine_of(degrees / 2); }
 
     template <class T>
     static T inside(const Point<T>& p, const Setting&) {

@@ -21,18 +21,17 @@ struct Pannini : AnyProjection {
         return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi * kBelow);
     }
     /// The width, by t = tan(a / 2): sin a / (d + cos a) = 2 t / ((d + 1) + (d - 1) t^2), which cancels for d < 1 only.
-    static long double width(long double degrees, const Setting& s) {
-        const long double t = tan_of(degrees / 4);
-        return 4 * (s.distance.d + 1.0L) * t / (s.distance.d + 1.0L + (s.distance.d - 1.0L) * t * t);
+    static DoubleDouble width(DoubleDouble degrees, const Setting& s) {
+        const DoubleDouble t = tan_of(degrees / 4), d = s.distance.d;
+        return 4 * (d + 1) * t / (d + 1 + (d - 1) * t * t);
     }
     /// The error as in AnyProjection::width_units: t is off by 14 units, 4 (d + 1) t by 16. Of the sum below, d + 1 is off by
     /// 1, (d - 1) t^2 by 14 twice and 3 more, 31, and the sum itself by 1: all of it by 32 times its terms' magnitudes. With
     /// the quotient, and 4 for what is computed from the width, that is 21 units and 32 times the magnitudes over the sum,
     /// which are at least 1.
-    static double width_units(long double degrees, const Setting& s) {
-        const long double t = tan_of(degrees / 4), falling = (s.distance.d - 1.0L) * t * t;
-        return 56 * static_cast<double>((s.distance.d + 1.0L + std::fabs(falling)) /
-                                        (s.distance.d + 1.0L + falling));
+    static double width_units(DoubleDouble degrees, const Setting& s) {
+        const DoubleDouble t = tan_of(degrees / 4), d = s.distance.d, falling = (d - 1) * t * t;
+        return 56 * static_cast<double>((d + 1 + fabs(falling)) / (d + 1 + falling));
     }
     static double largest_tangent(double half_width, double half_height) {
         return std::max(half_width, half_height);

@@ -5,7 +5,7 @@ struct Rectilinear : FlatFamily {
     static constexpr FieldOfView fov{90, 180, true};
     static constexpr Lensed lensed = Lensed::flat;
 
-    static long double width(long double degrees, const Setting&) { return 2 * tan_of(degrees / 2); }
+    static DoubleDouble width(DoubleDouble degrees, const Setting&) { return 2 * tan_of(degrees / 2); }
     static double largest_tangent(double half_width, double half_height) {
         return std::max(half_width, half_height);
     }

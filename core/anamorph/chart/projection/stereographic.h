@@ -5,7 +5,7 @@ struct Stereographic : AxisFamily {
     static constexpr FieldOfView fov{180, 360, true};
     static constexpr Lensed lensed = Lensed::stereographic;
 
-    static long double width(long double degrees, const Setting&) { return 4 * tan_of(degrees / 4); }
+    static DoubleDouble width(DoubleDouble degrees, const Setting&) { return 4 * tan_of(degrees / 4); }
 
     /// The local ray, by (sin t, cos t) (1 + r^2 / 4) = (r, 1 - r^2 / 4).
     template <class T>

@@ -10,8 +10,8 @@ struct Unified : AnyProjection {
     static constexpr double least_d = 0;
 
     static double most_fov(const FieldOfView& most, const Setting& s) { return Pannini::most_fov(most, s); }
-    static long double width(long double degrees, const Setting& s) { return Pannini::width(degrees, s); }
-    static double width_units(long double degrees, const Setting& s) {
+    static DoubleDouble width(DoubleDouble degrees, const Setting& s) { return Pannini::width(degrees, s); }
+    static double width_units(DoubleDouble degrees, const Setting& s) {
         return Pannini::width_units(degrees, s);
     }
     static double largest_tangent(double half_width, double half_height) {
