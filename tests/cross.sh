@@ -1,24 +1,34 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Usage: tests/cross.sh arm64|i386 FOLDER [all]
-# Compiles the core for arm64, or for x86 of 32 bits, into FOLDER, and draws the pictures of tests/core/test_picture_hash.cpp there (by qemu,
-# where this machine cannot): they have the hashes of every other processor. With "all" all tests of the core are run. Debian's libraries of
-# that machine are unpacked beside it; this one gets none. Needs section [arm64] or [i386] of packages.txt.
+# Usage: tests/cross.sh arm64|i386|wasm FOLDER [all]
+# Compiles the core for arm64, for x86 of 32 bits, or as WebAssembly into FOLDER, and draws the pictures of tests/core/test_picture_hash.cpp
+# there (by qemu, or node, where this machine cannot): they have the hashes of every other processor. With "all" all tests of the core are
+# run, but as WebAssembly. Debian's libraries of that machine are unpacked beside it; this one gets none. Needs section [arm64], [i386] or
+# [web] of packages.txt, and for the last [build] and [tests], too.
 set -euo pipefail
 usage() {
-    echo "usage: cross.sh arm64|i386 FOLDER [all]" >&2
+    echo "usage: cross.sh arm64|i386|wasm FOLDER [all]" >&2
     exit 1
 }
 [ $# -eq 2 ] || { [ $# -eq 3 ] && [ "$3" = all ]; } || usage
 case "$1" in
     arm64) ANAMORPH_CROSS=aarch64-linux-gnu run=(qemu-aarch64) ;;
     i386) ANAMORPH_CROSS=i686-linux-gnu run=() ;;
+    wasm) [ $# -eq 2 ] || usage ;;
     *) usage ;;
 esac
 machine="$1"
 source="$(cd "$(dirname "$0")/.." && pwd)"
 mkdir -p "$2"
 folder="$(cd "$2" && pwd)"
+if [ "$machine" = wasm ]; then
+    # Debian's emscripten finds Debian's acorn with Debian's node alone, and takes what that fetches for a web server's.
+    export NODE_PATH=/usr/share/nodejs
+    cmake -S "$source" -B "$folder/build" --preset web -DANAMORPH_TESTS=ON
+    cmake --build "$folder/build" -j "$(nproc)" --target anamorph_hash_tests
+    node --no-experimental-fetch "$folder/build/tests/web/hashes/anamorph_hash_tests.js"
+    exit
+fi
 export ANAMORPH_CROSS ANAMORPH_CROSS_ROOT="$folder/root"
 
 # With lists of its own, of both kinds of machine.

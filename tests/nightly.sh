@@ -56,6 +56,7 @@ step test-paraview-long run_tests paraview -L nightly
 step farm tests/farm.sh build/release
 step arm64 tests/cross.sh arm64 build/arm64
 step i386 tests/cross.sh i386 build/i386 all
+step wasm tests/cross.sh wasm build/wasm
 step web tests/web/web.sh build/release
 step build-fuzz build fuzz
 step test-fuzz run_tests fuzz

@@ -29,4 +29,12 @@ add_compile_options(-fwasm-exceptions -msimd128)
 add_link_options(-fwasm-exceptions)
 
 # The page's pictures are red, green and blue of 8 bits, so loops over other texels are left out (image/texel_types.h).
-add_compile_definitions(ANAMORPH_SMALL)
+if(NOT ANAMORPH_TESTS)
+    add_compile_definitions(ANAMORPH_SMALL)
+endif()
+
+# plugins/web/libm.cpp has these functions in place of musl's.
+set(ANAMORPH_WEB_LIBM "")
+foreach(function sin cos tan asin acos atan atan2 hypot)
+    list(APPEND ANAMORPH_WEB_LIBM -Wl,--wrap=${function})
+endforeach()

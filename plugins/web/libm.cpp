@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Functions of the C library, which plans are made with: rounded as the GNU C library of the desktop program rounds them. That is correct
-// in all but one of a thousand values, and so are these, rounded from long double's 113 bits; musl's own are not in one of ten. The linker
-// puts them in place of musl's (--wrap). Arithmetic of long double is a function for each operation here: the angle, which exact pixels
-// take several times each, is a sum of two doubles, and of long double where that leaves open which double is the nearest (Ziv 1991).
+// in all but one of a thousand values, and so are these, rounded from numbers of two doubles; musl's own are not in one of ten. The linker
+// puts them in place of musl's (--wrap). The angle, which exact pixels take several times each, is a sum of two doubles that is quickly
+// found, and a DoubleDouble where that leaves open which double is the nearest (Ziv 1991).
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+
+#include "anamorph/number/double_double.h"
+
+using anamorph::DoubleDouble;
 
 namespace {
 
@@ -35,9 +39,8 @@ Pair product_of(double a, double b) {
     return {product,
             ((p.upper * q.upper - product) + p.upper * q.lower + p.lower * q.upper) + p.lower * q.lower};
 }
-Pair pair_of(long double v) {
-    const auto upper = static_cast<double>(v);
-    return {upper, static_cast<double>(v - static_cast<long double>(upper))};
+Pair pair_of(const DoubleDouble& v) {
+    return {v.upper(), v.lower()};
 }
 
 constexpr int kAngles = 64;
@@ -46,8 +49,7 @@ const std::array<Pair, kAngles + 1>& angles() {
     static const std::array<Pair, kAngles + 1> all = [] {
         std::array<Pair, kAngles + 1> made;
         for (int k = 0; k <= kAngles; ++k)
-            made[static_cast<std::size_t>(k)] =
-                pair_of(std::atan(static_cast<long double>(k) / static_cast<long double>(kAngles)));
+            made[static_cast<std::size_t>(k)] = pair_of(atan2(DoubleDouble(k), kAngles));
         return made;
     }();
     return all;
@@ -77,34 +79,50 @@ Pair angle_of(double less, double more) {
     return sum_of_ordered(sum.upper, sum.lower + (angle.lower + (rest + tail)));
 }
 
+struct SineAndCosine {
+    DoubleDouble sine, cosine;
+
+    explicit SineAndCosine(double x) { sin_cos(DoubleDouble(x), sine, cosine); }
+};
+
 }  // namespace
 
 extern "C" {
 
+double __real_sin(double x);
+double __real_cos(double x);
+double __real_tan(double x);
+double __real_atan2(double y, double x);
+
+/// Beyond what DoubleDouble takes as an angle, and of what is no angle, musl's have to do.
 double __wrap_sin(double x) {
-    return static_cast<double>(std::sin(static_cast<long double>(x)));
+    if (!(std::fabs(x) <= DoubleDouble::kLargestAngle)) return __real_sin(x);
+    return static_cast<double>(SineAndCosine(x).sine);
 }
 double __wrap_cos(double x) {
-    return static_cast<double>(std::cos(static_cast<long double>(x)));
+    if (!(std::fabs(x) <= DoubleDouble::kLargestAngle)) return __real_cos(x);
+    return static_cast<double>(SineAndCosine(x).cosine);
 }
 double __wrap_tan(double x) {
-    return static_cast<double>(std::tan(static_cast<long double>(x)));
+    if (!(std::fabs(x) <= DoubleDouble::kLargestAngle)) return __real_tan(x);
+    return static_cast<double>(tan(DoubleDouble(x)));
 }
 double __wrap_asin(double x) {
-    return static_cast<double>(std::asin(static_cast<long double>(x)));
+    return static_cast<double>(asin(DoubleDouble(x)));
 }
 double __wrap_acos(double x) {
-    return static_cast<double>(std::acos(static_cast<long double>(x)));
+    return static_cast<double>(acos(DoubleDouble(x)));
 }
 double __wrap_atan(double x) {
-    return static_cast<double>(std::atan(static_cast<long double>(x)));
+    return static_cast<double>(atan2(DoubleDouble(x), 1));
 }
 double __wrap_atan2(double y, double x) {
     const double across = std::fabs(x), down = std::fabs(y);
     const double less = std::min(across, down), more = std::max(across, down);
     // Neither number is extreme, nor is their ratio.
     if (!std::isunordered(x, y) && more < 0x1p500 && less > 0x1p-400 && less > more * 0x1p-100) {
-        static const Pair turn = pair_of(std::acos(-1.0L)), right = {turn.upper / 2, turn.lower / 2};
+        constexpr Pair turn{DoubleDouble::pi().upper(), DoubleDouble::pi().lower()};
+        constexpr Pair right{turn.upper / 2, turn.lower / 2};
         Pair angle = angle_of(less, more);
         const auto less_than = [&](const Pair& whole) {
             const Pair sum = sum_of_ordered(whole.upper, -angle.upper);
@@ -116,7 +134,8 @@ double __wrap_atan2(double y, double x) {
         const double rounded = angle.upper + (angle.lower - most);
         if (rounded == angle.upper + (angle.lower + most)) return std::copysign(rounded, y);
     }
-    return static_cast<double>(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
+    if (x == 0 || y == 0 || !std::isfinite(x) || !std::isfinite(y)) return __real_atan2(y, x);
+    return static_cast<double>(atan2(DoubleDouble(y), DoubleDouble(x)));
 }
 
 /// The root of the sum of squares, less the first order of what rounding left in it (Borges 2020, "An Improved Algorithm for hypot(a,b)",

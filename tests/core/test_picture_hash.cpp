@@ -279,6 +279,61 @@ const std::vector<std::string>& recipes() {
     return list;
 }
 
+/// Recipes that need no more than one type and one filter each: the other projections, schemes and surfaces, and views whose blocks or
+/// pixels lie on ties of rounding, where a number that is off by its last bit shows.
+const std::vector<std::string>& further_recipes() {
+    static const std::vector<std::string> list = {
+        "pano?to=cubemap3x2&yaw=20&pitch=15&size=96x64",
+        "pano?to=cubecross&yaw=20&pitch=15&size=64x48",
+        "pano?to=orthographic&yaw=20&pitch=15&size=63",
+        "pano?to=sinusoidal&yaw=20&pitch=15&size=96x48",
+        "pano?to=dual_fisheye&yaw=20&pitch=15&size=96x48",
+        "pano?to=dual_fisheye_tb&yaw=20&pitch=15&size=48x96",
+        "pano?to=octahedral&yaw=20&pitch=15&size=64",
+        "pano?to=mirror_ball&yaw=20&pitch=15&size=64",
+        "pano?to=unified&d=0.9&fov=150&size=96x64",
+        "pano?to=eucm&e=0.6&d=1.1&fov=150&size=96x64",
+        "pano?to=double_sphere&e=0.5&d=-0.2&fov=150&size=96x64",
+        "pano?to=formula&ray_x=sin(s)&ray_y=t&ray_z=cos(s)&size=64",
+        "pano?from=cylindrical&srcfov=200&to=fisheye&fov=180&size=64",
+        "pano?from=equisolid&to=fisheye&fov=180&size=64",
+        "pano?from=stereographic&to=fisheye&fov=180&size=64",
+        "pano?from=mercator&to=fisheye&fov=180&size=64",
+        "pano?from=pannini&srcfov=150&to=fisheye&fov=180&size=64",
+        "pano?from=orthographic&to=fisheye&fov=180&size=64",
+        "pano?from=sinusoidal&to=fisheye&fov=180&size=64",
+        "pano?from=hammer&to=fisheye&fov=180&size=64",
+        "pano?from=dual_fisheye&to=fisheye&fov=180&size=64",
+        "pano?from=mirror_ball&to=fisheye&fov=180&size=64",
+        "pano?from=unified&srcd=0.9&srcfov=150&to=fisheye&fov=180&size=64",
+        "pano?from=eucm&srce=0.6&srcd=1.1&srcfov=150&to=fisheye&fov=180&size=64",
+        "pano?from=double_sphere&srce=0.5&srcd=-0.2&srcfov=150&to=fisheye&fov=180&size=64",
+        "pano?to=rectilinear&fov=90&size=64&scheme=hardware&machine=embm-2003&reached=1",
+        "mosaic?circles=1&from=cylindrical&x=0.3&z=-0.2&yaw=70&fov=80&size=64x48&scheme=exact",
+        "mosaic?circles=1&from=cylindrical&x=0.3&z=-0.2&yaw=70&fov=80&size=64x48&scheme=blocks",
+        "mosaic?circles=1&from=cylindrical&x=0.3&z=-0.2&yaw=70&fov=80&size=64x48&scheme=residual",
+        "lens?fov=80&lens=brown:k1=-0.15,k2=0.03&scheme=exact",
+        "lens?fov=80&lens=brown:k1=-0.15,k2=0.03&scheme=blocks",
+        "lens?fov=106&lens=ptlens:b=0.153&mode=distort&size=320&tol=0.1",
+        "lens?fov=57&lens=poly:k2=0.23&mode=distort&size=320&tol=0.1",
+        "lens?fov=83&lens=poly:k2=-0.04&mode=distort&size=320x160&tol=0.001",
+        "lens?fov=80&lens=ptlens:b=-0.1&mode=distort&size=360",
+        "map?u=x+5*sin(y/7)&v=y+3*cos(x/9)&scheme=blocks",
+        "map?u=x+5*sin(y/7)&v=y+3*cos(x/9)&scheme=residual",
+        "map?u=width*(0.5+0.3*exp(-r)*log(2+px^2))&v=height*(0.5+0.4*asinh(py))",
+        "warp?mesh=grid.json&scheme=hermite",
+        "morph?features=lines.json&t=0.4&scheme=hardware",
+        "drape?surface=plane&camera=0.4,0.3,2.5&size=64x48",
+        "drape?surface=page_turn&camera=0.4,0.3,2.5&size=64x48",
+        "drape?surface=ripples&camera=0.4,0.3,2.5&size=64x48",
+        "drape?surface=waves&blend=ripples,sphere&weights=0.4,0.6&camera=0.4,0.3,2.5&size=64x48",
+        "pano?to=orthographic&yaw=88&pitch=-16&roll=28&size=133&filter=antialias&tol=0.1",
+        "pano?to=equirectangular&yaw=13&size=320x180&filter=nearest&tol=0.001",
+        "pano?to=fisheye&fov=180&yaw=45&size=128&filter=nearest&tol=0.1",
+    };
+    return list;
+}
+
 /// Recipes of figures, which have no sources but textures.
 const std::vector<std::string>& figure_recipes() {
     static const std::vector<std::string> list = {
@@ -332,6 +387,12 @@ std::vector<Case> cases() {
             if (turn % 13 == 7 && recipe.find("kim-2003") == std::string::npos) way.channels = 5;
             list.push_back({recipe, way});
         }
+    }
+    for (const std::string& recipe : further_recipes()) {
+        const std::vector<std::string> filters = filters_of(recipe);
+        const bool has_own = recipe.find("filter=") != std::string::npos;
+        list.push_back({recipe, {kTypes[turn % 4], has_own ? "" : filters[turn % filters.size()]}});
+        ++turn;
     }
     const std::string view = recipes()[0];
     for (const char* const filter : {"bilinear", "bicubic", "antialias"})
