@@ -9,6 +9,8 @@
 #include <functional>
 #include <random>
 
+#include "anamorph/number/rounded.h"
+
 namespace anamorph::test_double_double {
 namespace {
 
@@ -173,6 +175,46 @@ TEST(DoubleDouble, FunctionsAreAsExactAsTheySay) {
               -94);
 }
 
+TEST(DoubleDouble, WhatCancelsLeavesAsManyDigits) {
+    constexpr unsigned kSeed = 3;
+    RecordProperty("seed", static_cast<int>(kSeed));
+    using D = DoubleDouble;
+    const auto next_to = [](const D& a, const D& b) {
+        return D(a.upper() * (1 + std::ldexp(1.0, -52 + std::abs(std::ilogb(b.upper())) % 8)),
+                 b.lower() / b.upper() * a.upper());
+    };
+    EXPECT_LT(log2_of_error(2, kSeed,
+                            [&](const D& a, const D& b) {
+                                const D near = next_to(a, b);
+                                return std::pair(near - a, Exact(exact(near) - exact(a)));
+                            }),
+              -102);
+    // Next to multiples of a quarter of a turn, which are known to more digits than a DoubleDouble has.
+    EXPECT_LT(log2_of_error(50, kSeed,
+                            [](const D& a, const D&) {
+                                const D near = std::round(std::fabs(a.upper())) * (D::pi() / 2);
+                                D s, c;
+                                sin_cos(near, s, c);
+                                return std::pair(s * c, Exact(sin(exact(near)) * cos(exact(near))));
+                            }),
+              -92);
+}
+
+// Beyond kLargestAngle the second part of an angle is not asked: bounds know.
+TEST(DoubleDouble, BoundsCountWhatLargeAnglesLose) {
+    using R = Rounded<DoubleDouble>;
+    for (const double lower : {1.5, -40.0, 100.0}) {
+        const DoubleDouble angle(0x1p60, lower);
+        DoubleDouble s, c;
+        sin_cos(angle, s, c);
+        R bound_s, bound_c;
+        sin_cos(R(Interval(0x1p60 - 256, 0x1p60 + 256), 0, 0), bound_s, bound_c);
+        EXPECT_GT(abs(exact(s) - sin(exact(angle))), 0.01);
+        EXPECT_LE(abs(exact(s) - sin(exact(angle))), bound_s.error);
+        EXPECT_LE(abs(exact(c) - cos(exact(angle))), bound_c.error);
+    }
+}
+
 TEST(DoubleDouble, ConstantsAreNearest) {
     const Exact pi = boost::math::constants::pi<Exact>();
     EXPECT_LT(abs(exact(DoubleDouble::pi()) - pi), Exact(0x1p-107));
@@ -214,12 +256,20 @@ TEST(DoubleDouble, ExtremesAreThoseOfDouble) {
     is(asinh(-zero), -0.0);
     is(pow(zero, -2), HUGE_VAL);
     is(pow(zero, 2), 0);
+    EXPECT_EQ(log(DoubleDouble(0x1.fffffffffffffp1023)).upper(), std::log(0x1.fffffffffffffp1023));
+    EXPECT_EQ(log(tiny).upper(), std::log(0x1p-1074));
+    EXPECT_EQ(asinh(DoubleDouble(0x1p1000)).upper(), std::asinh(0x1p1000));
+    EXPECT_EQ(asinh(DoubleDouble(0x1p513)).upper(), std::asinh(0x1p513));
+    is(atan2(-tiny, huge), -0.0);
     is(floor(DoubleDouble(2, -0x1p-60)), 1);
     is(floor(DoubleDouble(-2.5)), -3);
     for (const double y : {0.0, -0.0, 1.0, -1.0, HUGE_VAL, -HUGE_VAL})
         for (const double x : {0.0, -0.0, 1.0, -1.0, HUGE_VAL, -HUGE_VAL})
             EXPECT_EQ(atan2(DoubleDouble(y), DoubleDouble(x)).upper(), std::atan2(y, x)) << y << " " << x;
     DoubleDouble s, c;
+    sin_cos(-zero, s, c);
+    is(s, -0.0);
+    is(c, 1);
     for (const DoubleDouble& a : {none, infinite, DoubleDouble(0x1p60)}) {
         sin_cos(a, s, c);
         if (isfinite(a))

@@ -244,8 +244,8 @@ DoubleDouble pow(const DoubleDouble& a, double exponent) {
 
 DoubleDouble log(const DoubleDouble& a) {
     if (!(a.upper() > 0) || std::isinf(a.upper())) return std::log(a.upper());
-    // The power of two that leaves 3/4 to 3/2.
-    const int twos = std::ilogb(a.upper() * (4.0 / 3));
+    // The power of two that leaves 3/4 to 3/2; no a is too large for it.
+    const int twos = std::ilogb(a.upper() * (2.0 / 3)) + 1;
     return kLogOf2 * twos + small_log1p(scaled(a, -twos) - 1);
 }
 
