@@ -1,20 +1,20 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Usage: tests/cross.sh arm64|i386|wasm FOLDER [all]
-# Compiles the core for arm64, for x86 of 32 bits, or as WebAssembly into FOLDER, and draws the pictures of tests/core/test_picture_hash.cpp
-# there (by qemu, or node, where this machine cannot): they have the hashes of every other processor. With "all" all tests of the core are
-# run, but as WebAssembly. Debian's libraries of that machine are unpacked beside it; this one gets none. Needs section [arm64], [i386] or
-# [web] of packages.txt, and for the last [build] and [tests], too.
+# Usage: tests/cross.sh arm64|avx512|i386|wasm FOLDER [all]
+# Compiles the core for arm64, for x86 with AVX-512 or of 32 bits, or as WebAssembly into FOLDER, and draws the pictures of
+# tests/core/test_picture_hash.cpp there (by qemu, Bochs or node, where this machine cannot): they have the hashes of every other processor.
+# With "all" all tests of the core are run on arm64 or 32 bits. Debian's libraries of that machine are unpacked beside it; this one gets
+# none. Needs section [arm64], [avx512], [i386] or [web] of packages.txt, and for the last [build] and [tests], too.
 set -euo pipefail
 usage() {
-    echo "usage: cross.sh arm64|i386|wasm FOLDER [all]" >&2
+    echo "usage: cross.sh arm64|avx512|i386|wasm FOLDER [all]" >&2
     exit 1
 }
 [ $# -eq 2 ] || { [ $# -eq 3 ] && [ "$3" = all ]; } || usage
 case "$1" in
     arm64) ANAMORPH_CROSS=aarch64-linux-gnu run=(qemu-aarch64) ;;
     i386) ANAMORPH_CROSS=i686-linux-gnu run=() ;;
-    wasm) [ $# -eq 2 ] || usage ;;
+    avx512 | wasm) [ $# -eq 2 ] || usage ;;
     *) usage ;;
 esac
 machine="$1"
@@ -28,6 +28,13 @@ if [ "$machine" = wasm ]; then
     cmake --build "$folder/build" -j "$(nproc)" --target anamorph_hash_tests
     node --no-experimental-fetch "$folder/build/tests/web/hashes/anamorph_hash_tests.js"
     exit
+fi
+if [ "$machine" = avx512 ]; then
+    # Bochs 2.7 refuses gathers whose indices lie in one of the upper sixteen registers.
+    cmake -S "$source" -B "$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DANAMORPH_OIIO=OFF -DANAMORPH_COMMAND=OFF \
+        -DCMAKE_CXX_FLAGS="$(printf -- '-ffixed-xmm%d ' {16..31})"
+    cmake --build "$folder/build" -j "$(nproc)" --target anamorph_hash_tests
+    exec "$source/tests/emulate.sh" "$folder/emulated" "$folder/build/tests/core/anamorph_hash_tests"
 fi
 export ANAMORPH_CROSS ANAMORPH_CROSS_ROOT="$folder/root"
 

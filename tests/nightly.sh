@@ -4,7 +4,7 @@
 # tests of the core cover, clang-tidy, and what became of the last version's binary interface. It says how long each step took; the
 # last line is ctest's own summary.
 . "$(dirname "$0")/steps.sh"
-tests/install_packages.sh nightly arm64 farm i386 packages web
+tests/install_packages.sh nightly arm64 avx512 farm i386 packages web
 
 # Each file by itself, so that what it forgets to include is found, and clang-tidy has a command for each.
 clang="build/clang"
@@ -55,6 +55,7 @@ step build-paraview build_paraview -DANAMORPH_NIGHTLY=ON
 step test-paraview-long run_tests paraview -L nightly
 step farm tests/farm.sh build/release
 step arm64 tests/cross.sh arm64 build/arm64
+step avx512 tests/cross.sh avx512 build/avx512
 step i386 tests/cross.sh i386 build/i386 all
 step wasm tests/cross.sh wasm build/wasm
 step web tests/web/web.sh build/release
