@@ -26,7 +26,8 @@ fetch_kernel() {
 root="$folder/root" disc="$folder/disc"
 rm -rf "$root" "$disc" && mkdir -p "$root"/{bin,dev,proc,tmp} "$disc"
 cp /bin/busybox "$root/bin/"
-ldd "$program" | grep -o '/[^ ]*' | xargs -I FILE cp --parents -L FILE "$root"
+libraries="$(ldd "$program" | grep -o '/[^ ]*' || true)" # a static program has none
+for library in $libraries; do cp --parents -L "$library" "$root"; done
 cp --parents -L "$program" "$root"
 cp -r --parents "$source/tests/data" "$root"
 cat >"$root/init" <<END
