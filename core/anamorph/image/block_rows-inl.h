@@ -123,8 +123,8 @@ struct RowPoints {
 
 constexpr bool kHasPair = hn::MaxLanes(Pair()) == 8;  // two texels of up to four channels in one vector
 
-// Highway's own conversions of half where the processor has none cut off, and know no infinity.
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+// Highway's own conversions of half where the processor has none, or is to use none, cut off, and know no infinity.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2 && !defined(HWY_DISABLE_F16C)
 constexpr bool kHasHalf = true;
 #else
 constexpr bool kHasHalf = false;

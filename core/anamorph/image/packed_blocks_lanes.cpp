@@ -367,7 +367,7 @@ void DrawNineBytes(const Drawing& to) {
 
 // --- uint16 and half
 
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2 && !defined(HWY_DISABLE_F16C)
 constexpr bool kHasFloats = true;
 
 /// Two texels as floats. uint16: the left one's channels in the lower half, the right one's in the upper.
