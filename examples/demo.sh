@@ -45,7 +45,7 @@ show_progress() {
     [ ! -t 1 ] || [ "$shown" -lt 0 ] || echo
 }
 
-targets=(anamorph.imageio anamorph_program anamorph_pictures anamorph_figure)
+targets=(anamorph.imageio anamorph_program anamorph_pictures anamorph_figure example_scene)
 [ "$kind" != long ] || targets+=(anamorph_python)
 build() {
     # What is built already stays as it is; what is measured is built as it is meant to be.
@@ -59,7 +59,7 @@ build() {
 
 echo "building into build/release (the first time this takes about 6 minutes on 2 cores)"
 build 2>&1 | tee "$demo/build.txt" | show_progress || { cat "$demo/build.txt" >&2; exit 1; }
-export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio" PATH="$PWD/build/release/core/command:$PATH"
+export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio" PATH="$PWD/build/release/core/command:$PWD/build/release/examples/cpp:$PATH"
 
 # A real HDR panorama: one of the studio lights that come with Blender (CC0). Only the package's file is
 # fetched and unpacked; nothing of it is installed.
@@ -81,7 +81,7 @@ fi
 cd "$out"
 lines="$demo/lines.txt" # of the page: names, tabs, commands
 : >"$lines"
-shown=0 all=21
+shown=0 all=22
 # show NAME COMMAND...: runs a command that makes a picture, and says how far the demo is.
 show() {
     local name="$1" text="" word
@@ -111,7 +111,11 @@ view cube_faces "pano?to=cubecross&size=640x480"
 view from_elsewhere "mosaic?from=equirectangular&to=rectilinear&fov=100&x=0.4&z=0.3&depth=4&yaw=160&size=480x360"
 view hardware_2003 "pano?to=rectilinear&fov=100&yaw=160&size=480x360&scheme=hardware&machine=embm-2003"
 
-# The same from a recipe on disk, which every program that reads files by OpenImageIO can open; as an OpenEXR cube map.
+# Thrown onto walls, a floor, pillars and a block from where it was taken, with their shadows, as a camera sees them from elsewhere.
+oiiotool panorama.exr "${tone_map[@]}" -o panorama.ppm
+show scene.png sh -c "example_scene panorama.ppm scene.ppm && oiiotool scene.ppm -o scene.png"
+
+# The same panorama from a recipe on disk, which every program that reads files by OpenImageIO can open; as an OpenEXR cube map.
 printf '%s\n' '# six faces as a vertical strip' 'src=panorama.exr' 'to=cubemap' 'size=256' >cube.pano
 show cube.exr anamorph draw cube.pano -o cube.exr
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The programs of examples/cpp say what they are to, built here or against an installed Anamorph.
-add_subdirectory(${CMAKE_CURRENT_LIST_DIR}/../examples/cpp ${CMAKE_CURRENT_BINARY_DIR}/cpp)
+add_subdirectory(${CMAKE_CURRENT_LIST_DIR}/../examples/cpp ${PROJECT_BINARY_DIR}/examples/cpp)
 
 # example_says(NAME PATTERN)
 function(example_says name pattern)
@@ -17,6 +17,8 @@ example_says(morph "off by at most ${small}, middle 0\\.25\n")
 # Yaw 160 is seen at 0.5 + 160 / 360 of the width.
 example_says(panorama "off by at most ${small}, [0-9.]+ % computed exactly, middle 0\\.944[0-9]*\n")
 example_says(projector "texel \\(1024, 512\\)\n[1-9][0-9]* pieces painted, [1-9][0-9]* in the .* at most 0\\.4[0-9]* .*GLSL: bool findTexel")
+# Without its shadows, the scene would be seen by all 122022 rays that meet it.
+example_says(scene "^1[01][0-9][0-9][0-9][0-9] rays see the panorama, 1[12][0-9][0-9][0-9] shadows\n")
 example_says(deform "height 0\\.2, .*\nheight 0\\.1, columns [1-9][0-9]* to [1-4].*\nheight 0\\.025 .*\na point .* 3\\.1 and back to 3, nothing folds")
 example_says(figure "^2 bodies, 1 joint\nbody: 1 visible arcs, 1 hidden\nhead: 1 visible arcs, 1 hidden\ncovers 11[0-9]* pixels")
 example_says(operation "^middle 0\\.25\nanamorph:max_error ${small}\nanamorph:exact_fraction ${small}\nfov=400: must be")
