@@ -53,11 +53,6 @@ ImageSpec spec_of(const ArrayPixels& pixels, const ArrayFacts& facts) {
     return spec;
 }
 
-const Operation& operation_of(const std::string& name) {
-    if (const Operation* operation = find_operation(name)) return *operation;
-    throw Error("operation", printable(name), "must be one of " + operation_names());
-}
-
 }  // namespace
 
 ArraySource::ArraySource(const ArrayPixels& pixels, const ArrayFacts& facts)
@@ -65,12 +60,11 @@ ArraySource::ArraySource(const ArrayPixels& pixels, const ArrayFacts& facts)
 
 ArraySource::ArraySource(const std::string& file) : m_image(file) {}
 
-ArrayPicture::ArrayPicture(const std::string& operation, const std::vector<Assignment>& assignments,
+ArrayPicture::ArrayPicture(const Operation& operation, const std::vector<Assignment>& assignments,
                            const std::vector<Input>& sources, const ArrayFiles& files, int subimage,
                            const ParallelFor& parallel_for)
-    : m_operation(operation), m_sources(sources), m_files(files) {
-    const Operation& known = operation_of(operation);
-    ParameterValues values(*known.parameters);
+    : m_operation(&operation), m_sources(sources), m_files(files) {
+    ParameterValues values(*operation.parameters);
     values.assign(assignments);
     std::vector<BufferPicture::SourceInput> inputs;
     for (const Input& source : sources)
@@ -78,7 +72,7 @@ ArrayPicture::ArrayPicture(const std::string& operation, const std::vector<Assig
                           source.picture ? source.picture->m_picture : nullptr});
     MemoryFiles in_memory{files.texts, {}};
     for (const auto& [name, image] : files.images) in_memory.images[name] = &image->image();
-    m_picture = std::make_shared<const BufferPicture>(known, values, inputs, parallel_for,
+    m_picture = std::make_shared<const BufferPicture>(operation, values, inputs, parallel_for,
                                                       MemoryFileReader(in_memory), subimage);
 }
 
@@ -116,7 +110,7 @@ void ArrayPicture::draw(const ArrayPixels& to, int x, int y, const ParallelFor& 
 const BlockMap& ArrayPicture::map() const {
     const Picture* picture = m_picture->of_maps();
     if (!picture || picture->maps.size() != 1 || picture->maps[0].layers.size() != 1)
-        throw Error("the picture of " + m_operation +
+        throw Error("the picture of " + m_operation->name +
                     " has no single source point: it is not one map of one source");
     return *picture->maps[0].blocks;
 }

@@ -66,8 +66,8 @@ class ArrayPicture {
         std::shared_ptr<const ArraySource> array = {};
         std::shared_ptr<const ArrayPicture> picture = {};
     };
-    /// Opens a picture of the operation of a name. Throws Error.
-    ArrayPicture(const std::string& operation, const std::vector<Assignment>& values,
+    /// Opens a picture of an operation. Throws Error.
+    ArrayPicture(const Operation& operation, const std::vector<Assignment>& values,
                  const std::vector<Input>& sources, const ArrayFiles& files, int subimage,
                  const ParallelFor& parallel_for);
 
@@ -97,7 +97,7 @@ class ArrayPicture {
     template <class Found>
     void each(const PointArrays& points, const ParallelFor& parallel_for, const Found& found) const;
 
-    std::string m_operation;
+    const Operation* m_operation;
     std::vector<Input> m_sources;
     ArrayFiles m_files;
     std::shared_ptr<const BufferPicture> m_picture;

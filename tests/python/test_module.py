@@ -3,6 +3,8 @@
 what cannot be taken."""
 import ast
 import concurrent.futures
+import enum
+import fractions
 import gc
 import inspect
 import json
@@ -209,6 +211,22 @@ class Recipes(unittest.TestCase):
         self.check(once, "k.tif.pano?from=equirectangular&fov=70.1&size=30x20&alpha=1")
         np.testing.assert_array_equal(anamorph.apply("pano", panorama, fov=None, size="30"), anamorph.pano(panorama, size=30))
 
+    def test_numbers_of_all_kinds(self):
+        panorama = noise(32, 64)
+        expected = anamorph.pano(panorama, fov=70, size=(30, 20), yaw=1)
+        Seventy = enum.IntEnum("Seventy", {"DEGREES": 70})
+        for fov in (Seventy.DEGREES, np.int8(70), np.float64(70), np.float16(70), fractions.Fraction(140, 2), "70", np.str_("70")):
+            for size in ([30, 20], (np.int64(30), 20), np.array([[30, 20]], np.uint16), (Seventy.DEGREES - 40, 20)):
+                with self.subTest((fov, size)):
+                    np.testing.assert_array_equal(anamorph.pano(panorama, fov=fov, size=size, yaw=True), expected)
+        for keys, parameter in ((dict(fov=2**70), "fov"), (dict(size=(2**70, 1)), "size"), (dict(size=(30.5, 20)), "size"), (dict(size=()), "size"),
+                                (dict(fov=(70, 70)), "fov"), ({"from": "equirectangular", "from_": "fisheye"}, "from")):
+            with self.subTest(keys), self.assertRaises(anamorph.Error) as caught:
+                anamorph.pano(panorama, **keys)
+            self.assertEqual(caught.exception.parameter, parameter)
+        with self.assertRaisesRegex(anamorph.Error, f"fov={2**70}: must be"):
+            anamorph.pano(panorama, fov=2**70)
+
     def test_an_st_map_in_memory(self):
         picture = noise(48, 64)
         stmap = anamorph.warp(picture, mesh=SHEET, output="stmap")
@@ -305,6 +323,22 @@ class Arrays(unittest.TestCase):
                     np.testing.assert_array_equal(anamorph.pano(array, **self.KEYS), anamorph.pano(array.copy(), **self.KEYS))
                 else:
                     np.testing.assert_array_equal(anamorph.pano(array, **self.KEYS), expected)
+
+    def test_layouts_of_two_axes(self):
+        panorama = noise(64, 128, 0)
+        expected = anamorph.pano(panorama, **self.KEYS)
+        wide = np.zeros((70, 300), np.float32)
+        wide[3:67, 5:261:2] = panorama
+        unaligned = np.frombuffer(b"x" + panorama.tobytes(), np.uint8)[1:].view(np.float32).reshape(panorama.shape)
+        for name, array in {"a part of every other": wide[3:67, 5:261:2], "upside down": panorama[::-1].copy()[::-1], "mirrored": panorama[:, ::-1].copy()[:, ::-1],
+                            "by columns": np.asfortranarray(panorama), "unaligned": unaligned}.items():
+            with self.subTest(name):
+                np.testing.assert_array_equal(anamorph.pano(array, **self.KEYS), expected)
+                out = np.zeros((21, 66), np.float32)[:, ::-2] if name == "mirrored" else np.zeros((21, 66), np.float32)[:, ::2]
+                np.testing.assert_array_equal(anamorph.pano(array, out=out, **self.KEYS), expected)
+        buffer = oiio.ImageBuf()
+        anamorph.pano(panorama, out=buffer, **self.KEYS)
+        np.testing.assert_array_equal(buffer.get_pixels("float")[:, :, 0], expected)
 
     def test_dlpack(self):
         panorama = noise(64, 128)
@@ -506,8 +540,13 @@ class BadInput(unittest.TestCase):
         fixed.flags.writeable = False
         with self.assertRaisesRegex(ValueError, "read-only"):
             picture.draw(out=fixed)
+        for keys in (dict(threads=1.5), dict(subimage="0"), dict(threads=[])):
+            with self.subTest(keys), self.assertRaisesRegex(TypeError, "must be an integer"):
+                anamorph.pano(noise(32, 64), **keys)
         with self.assertRaises(TypeError):
-            anamorph.pano(noise(32, 64), threads=1.5)
+            anamorph.apply(3, noise(32, 64))
+        with self.assertRaises(UnicodeEncodeError):
+            anamorph.pano(noise(32, 64), to="\ud800")
         with self.assertRaisesRegex(ValueError, "at least 0"):
             anamorph.pano(noise(32, 64), threads=-1)
         self.assertEqual(picture.draw().shape, (10, 20, 3))

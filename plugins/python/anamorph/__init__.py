@@ -18,7 +18,6 @@ What cannot be taken is an Error, a ValueError whose `parameter` is the key that
 """
 import inspect as _inspect
 import keyword as _keyword
-import numbers as _numbers
 import os as _os
 import sys as _sys
 from pkgutil import extend_path as _extend_path
@@ -27,10 +26,7 @@ import numpy as _numpy
 
 from . import _core
 from ._checks import encoded as _encoded
-from ._checks import error as _error
-from ._checks import integer as _integer
 from ._checks import integers as _integers
-from ._checks import json_of as _json_of
 from ._core import Error
 
 # The VTK modules are of a folder of the same name, which may be elsewhere.
@@ -38,9 +34,6 @@ __path__ = _extend_path(__path__, __name__)
 
 __version__ = _core.version
 _OPERATIONS = {operation["name"]: operation for operation in _core.operations()}
-_TABLES = {name: {key["name"]: key for key in operation["keys"]} for name, operation in _OPERATIONS.items()}
-_DTYPES = frozenset(map(_numpy.dtype, _core.dtypes))  # of this machine's byte order
-_CONVERTED = frozenset(map(_numpy.dtype, ("uint8", "uint16", "float16", "float32")))
 operations = tuple(_OPERATIONS)
 
 
@@ -88,41 +81,28 @@ class Picture:
     """
 
     def __init__(self, operation, *sources, subimage=0, threads=0, **keys):
-        if operation not in _OPERATIONS:
-            raise _error("operation", f"operation={operation}: must be one of {', '.join(operations)}")
-        keys = {_key_of(name): value for name, value in keys.items() if value is not None}
-        _check_sources_are_no_keys(_OPERATIONS[operation], keys)
-        table = _TABLES[operation]
-        texts, images = {}, {}
-        values = [(_encoded(name), _encoded(_text_of(table.get(name), name, value, texts, images), name))
-                  for name, value in keys.items()]
-        opened = [source._core if isinstance(source, Picture) else _source_of(source) for source in sources]
-        self._threads = _integer("threads", threads or 0)
-        if self._threads < 0:
-            raise ValueError(f"threads={threads}: must be at least 0")
-        self._core = _core.Picture(operation, values, opened, texts, images, _integer("subimage", subimage or 0), self._threads)
-        self._flat = _is_flat(sources[0]) if sources else True
+        self._core = _core.Picture(operation, sources, keys, subimage, threads)
         self.operation = operation
 
     @property
     def window(self):
         """The data window, (x0, y0, x1, y1): the pixels that draw() draws."""
-        return tuple(self._core.window)
+        return self._core.window
 
     @property
     def display(self):
         """The display window, (x0, y0, x1, y1)."""
-        return tuple(self._core.display)
+        return self._core.display
 
     @property
     def channels(self):
         """The names of the channels."""
-        return tuple(self._core.channels)
+        return self._core.channels
 
     @property
     def dtype(self):
         """The type of the pixels."""
-        return _numpy.dtype(self._core.dtype)
+        return self._core.dtype
 
     @property
     def subimages(self):
@@ -137,61 +117,32 @@ class Picture:
     @property
     def shape(self):
         """The shape of what draw() returns."""
-        return self._shape(self.window)
+        return self._core.shape(self._core.window)
 
     def reached(self):
         """What was reached over the whole picture: anamorph:max_error, a proven bound in source pixels, and what else the operation
         tells."""
-        return self._core.reached(self._threads)
+        return self._core.reached()
 
     def draw(self, roi=None, *, out=None, progress=None):
         """Draws the picture, or the pixels from (x0, y0) to before (x1, y1), roi=(x0, y0, x1, y1), counted as the windows are: black
         beyond the data window. `out`: an array of the same shape, or an ImageBuf; colours become the type that it has, as
         OpenImageIO converts them. `progress`: a function that is called with the number of rows that were drawn since, such as
         tqdm's update. Returns the array."""
-        roi = self.window if roi is None else _integers("roi", roi, 4)
-        x0, y0, x1, y1 = roi
-        if x1 <= x0 or y1 <= y0:
-            raise ValueError(f"roi={roi}: must be (x0, y0, x1, y1) with x0 < x1 and y0 < y1")
-        if progress is not None and not callable(progress):
-            raise TypeError("progress must be callable")
-        shape = self._shape(roi)
-        if out is None or _is_imagebuf(out):
-            pixels = _numpy.empty(shape, self.dtype)
-        else:
-            pixels = out
-            if not isinstance(out, _numpy.ndarray):
-                raise TypeError(f"out is a {type(out).__name__}: must be an array or an ImageBuf")
-            if out.shape != shape:
-                raise ValueError(f"out has the shape {out.shape}: must be {shape}")
-            if not out.flags.writeable:
-                raise ValueError("out is read-only: must be writeable")
-            if out.dtype not in _DTYPES:
-                raise TypeError(f"out has the dtype {out.dtype}: must be one of {', '.join(_core.dtypes)}")
-        drawn = pixels if pixels.ndim == 3 else pixels[:, :, None]
-        # Sources are read while pixels are written.
-        plain = pixels is not out or (_is_plain(drawn) and not any(_numpy.may_share_memory(drawn, array) for array in self._core.arrays))
-        to = drawn if plain else _numpy.empty(drawn.shape, drawn.dtype)
-        self._core.draw(to, x0, y0, self._threads, progress)
-        if not plain:
-            drawn[...] = to
-        if out is not None and _is_imagebuf(out):
-            _write_imagebuf(out, drawn, self, roi)
-            return out
-        return pixels
+        return _draw(self._core, roi, out, progress)
 
     def source_points(self, x, y):
         """The source points of points of the picture, by the formula in double: arrays u and v of the shape of x and y. All are in
         pixels, x and u to the right, y and v down from the display window's corner, the first pixel's centre at (0.5, 0.5). NaN where
         there is no source point, and beside the picture."""
         x, y = _numpy.broadcast_arrays(_numpy.asarray(x, float), _numpy.asarray(y, float))
-        u, v = self._core.source_points(x.ravel(), y.ravel(), self._threads)
+        u, v = self._core.source_points(x.ravel(), y.ravel())
         return u.reshape(x.shape), v.reshape(x.shape)
 
     def jacobians(self, x, y):
         """The derivatives of source_points: an array of the shape of x and y with two axes more, [[du/dx, du/dy], [dv/dx, dv/dy]]."""
         x, y = _numpy.broadcast_arrays(_numpy.asarray(x, float), _numpy.asarray(y, float))
-        return self._core.jacobians(x.ravel(), y.ravel(), self._threads).reshape(x.shape + (2, 2))
+        return self._core.jacobians(x.ravel(), y.ravel()).reshape(x.shape + (2, 2))
 
     def __array__(self, dtype=None, copy=None):
         drawn = self.draw()
@@ -201,64 +152,44 @@ class Picture:
         x0, y0, x1, y1 = self.window
         return f"<anamorph.Picture {self.operation} {x1 - x0}x{y1 - y0} {','.join(self.channels)} {self.dtype}>"
 
-    def _shape(self, roi):
-        x0, y0, x1, y1 = roi
-        count = len(self._core.channels)
-        flat = count == 1 and (self._flat or self._core.kind != "color")
-        return (y1 - y0, x1 - x0) if flat else (y1 - y0, x1 - x0, count)
-
 
 def apply(operation, *sources, out=None, roi=None, subimage=0, threads=0, progress=None, **keys):
     """Draws the picture of an operation, by its name: Picture(operation, *sources, ...).draw(...)."""
-    return Picture(operation, *sources, subimage=subimage, threads=threads, **keys).draw(roi, out=out, progress=progress)
+    return _apply(operation, sources, keys, out, roi, subimage, threads, progress)
 
 
-def _key_of(name):
-    return name[:-1] if name.endswith("_") and _keyword.iskeyword(name[:-1]) else name
+def _apply(operation, sources, keys, out, roi, subimage, threads, progress):
+    if out is None:
+        return _core.apply(operation, sources, keys, subimage, threads, roi, progress)
+    return _draw(_core.Picture(operation, sources, keys, subimage, threads), roi, out, progress)
 
 
-def _check_sources_are_no_keys(operation, keys):
-    for name in operation["sources"]:
-        names_images = name == operation["main_file"] and isinstance(keys.get(name), (str, _os.PathLike))
-        if name in keys and not names_images:
-            raise _error(name, f"{name}: sources are no keys: must be given first, in the order {', '.join(operation['sources'])}")
+def _draw(picture, roi, out, progress):
+    if out is None:
+        return picture.draw(roi, progress)
+    region = picture.region(roi)
+    if _is_imagebuf(out):
+        _write_imagebuf(out, _numpy.atleast_3d(picture.draw(region, progress)), picture, region)
+    else:
+        _draw_to(out, picture, region, progress)
+    return out
 
 
-def _number_text(key, value):
-    if isinstance(value, (int, float)):  # most are: abstract classes take longer to ask
-        return str(int(value)) if isinstance(value, int) else repr(float(value))
-    if isinstance(value, (_numpy.bool_, _numbers.Integral)):
-        return str(int(value))
-    if isinstance(value, _numpy.floating):
-        return str(value)  # its own fewest digits
-    if isinstance(value, _numbers.Real):
-        return repr(float(value))
-    raise TypeError(f"{key}={value!r}: a {type(value).__name__} is no value of a key")
-
-
-def _text_of(row, key, value, texts, images):
-    """The value of a key as a recipe has it. What is no text, but stands for a file, is put into `texts` and `images`."""
-    kind = row["type"] if row else "text"
-    if isinstance(value, str):
-        return value
-    if isinstance(value, _os.PathLike):
-        return _os.fspath(value)
-    if kind in ("image", "file") and isinstance(value, (dict, list)):
-        name = f"<{key}>.json"
-        texts[name] = _json_of(key, value)
-        return name
-    if kind == "image" and not isinstance(value, _numbers.Number):
-        name = f"<{key}>"
-        images[name] = _source_of(value, key)
-        return name
-    if kind == "file":
-        raise TypeError(f"{key} is a {type(value).__name__}: must be the name of a file, or the dict or list that a JSON file holds")
-    if isinstance(value, (tuple, list, _numpy.ndarray)):
-        separator = "x" if kind == "extent" else ","
-        flat = isinstance(value, (tuple, list)) and all(isinstance(part, (int, float)) for part in value)
-        parts = value if flat else _numpy.ravel(value).tolist()
-        return separator.join([_number_text(key, part) for part in parts])
-    return _number_text(key, value)
+def _draw_to(out, picture, region, progress):
+    if not isinstance(out, _numpy.ndarray):
+        raise TypeError(f"out is a {type(out).__name__}: must be an array or an ImageBuf")
+    shape = picture.shape(region)
+    if out.shape != shape:
+        raise ValueError(f"out has the shape {out.shape}: must be {shape}")
+    if not out.flags.writeable:
+        raise ValueError("out is read-only: must be writeable")
+    _core.check_pixels(out, "out")
+    # Sources are read while pixels are written.
+    plain = _core.is_plain(out) and not any(_numpy.may_share_memory(out, array) for array in picture.arrays)
+    pixels = out if plain else _numpy.empty(shape, out.dtype)
+    picture.draw_to(pixels, *region[:2], progress)
+    if not plain:
+        out[...] = pixels
 
 
 def _pixels(pixels, name):
@@ -266,22 +197,8 @@ def _pixels(pixels, name):
     if hasattr(pixels, "__dlpack__") and not isinstance(pixels, _numpy.ndarray):
         pixels = _numpy.from_dlpack(pixels)
     array = _numpy.asarray(pixels)
-    if array.dtype not in _DTYPES:
-        raise TypeError(f"{name} has the dtype {array.dtype}: must be one of {', '.join(_core.dtypes)}")
-    if array.ndim not in (2, 3):
-        raise ValueError(f"{name} has the shape {array.shape}: must be (height, width) or (height, width, channels)")
-    if array.size == 0:
-        raise ValueError(f"{name} has the shape {array.shape}: must have pixels")
+    _core.check_pixels(array, name)
     return array
-
-
-def _is_plain(array):
-    """Do the channels of a pixel stand next to each other, and pixels and rows behind each other, aligned?"""
-    rows, columns, channels = array.strides
-    if array.dtype not in _CONVERTED and (rows | columns | array.ctypes.data) % 4:
-        return False  # pixels that are only moved are moved four bytes at a time where that fits
-    return (channels == array.itemsize and columns >= array.shape[2] * array.itemsize and rows >= 0
-            and array.flags.aligned and (rows >= columns * array.shape[1] or array.shape[0] == 1))
 
 
 def _is_imagebuf(value):
@@ -290,31 +207,23 @@ def _is_imagebuf(value):
     return module is not None and isinstance(value, module.ImageBuf)
 
 
-def _is_flat(source):
-    if isinstance(source, Picture):
-        return source._flat
-    if isinstance(source, Image):
-        return source.pixels.ndim == 2
-    if isinstance(source, (str, _os.PathLike)) or _is_imagebuf(source):
-        return True
-    return (source.ndim if isinstance(source, _numpy.ndarray) else _numpy.ndim(source)) == 2
+def _opened(source):
+    """A source of a picture that is no array, as the core takes it: the core calls this."""
+    return source._core if isinstance(source, Picture) else _source_of(source, "a source")
 
 
-def _source_of(source, name="a source"):
+def _source_of(source, name):
+    """An image that is no Picture as the core takes it; `name` is for messages."""
     if isinstance(source, (str, _os.PathLike)):
         return _core.file_source(_encoded(_os.fsdecode(source), name))
-    if _is_imagebuf(source):
+    from_imagebuf = _is_imagebuf(source)
+    if from_imagebuf:
         source = _read_imagebuf(source)
-    array = source.pixels if isinstance(source, Image) else _pixels(source, name)
-    if array.ndim == 2:
-        array = array[:, :, None]
-    if not _is_plain(array):
-        array = _numpy.ascontiguousarray(array)
     if not isinstance(source, Image):
-        return _core.array_source(array, (), False, (0, 0), (0, 0, 0, 0), ())
-    return _core.array_source(array, [_encoded(channel, "channels") for channel in source.channels], source.unassociated, source.corner, source.display,
+        return _core.array_source(_pixels(source, name), name)
+    return _core.image_source(source.pixels, [_encoded(channel, "channels") for channel in source.channels], source.unassociated, source.corner, source.display,
                               [(_encoded(name, "metadata"), _encoded(value, name) if isinstance(value, str) else value)
-                               for name, value in source.metadata.items()])
+                               for name, value in source.metadata.items()], from_imagebuf or source.pixels.ndim == 2)
 
 
 def _read_imagebuf(image):
@@ -386,8 +295,8 @@ def _documentation(operation):
 def _function(operation):
     name = operation["name"]
 
-    def function(*sources, **keys):
-        return apply(name, *sources, **keys)
+    def function(*sources, out=None, roi=None, subimage=0, threads=0, progress=None, **keys):
+        return _apply(name, sources, keys, out, roi, subimage, threads, progress)
 
     keyword = _inspect.Parameter.KEYWORD_ONLY
     keys = [_inspect.Parameter(_parameter_name(key["name"]), keyword, default=None) for key in _keys_of(operation)

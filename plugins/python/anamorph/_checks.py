@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values that callers give, checked and written as the core takes them."""
 import json as _json
+import numbers as _numbers
 
 import numpy as _numpy
 
-from ._core import Error
+from ._core import Error, encoded, integer, integers
+
+__all__ = ["encoded", "error", "flat_list", "integer", "integers", "json_of", "number_text"]
 
 
 def error(parameter, message):
@@ -13,11 +16,19 @@ def error(parameter, message):
     return made
 
 
-def encoded(text, name="a key"):
-    """Bytes, since names of files may be any."""
-    if "\0" in text:
-        raise error(name, f"{name}: must have no NUL character")
-    return text.encode("utf-8", "surrogateescape")
+def number_text(key, value):
+    """A number that is no int and no float of Python, or an int that is too long, as a recipe has it."""
+    if isinstance(value, (_numpy.bool_, _numbers.Integral)):
+        return str(int(value))
+    if isinstance(value, _numpy.floating):
+        return str(value)  # its own fewest digits
+    if isinstance(value, _numbers.Real):
+        return repr(float(value))
+    raise TypeError(f"{key}={value!r}: a {type(value).__name__} is no value of a key")
+
+
+def flat_list(values):
+    return _numpy.ravel(values).tolist()
 
 
 def plain_json(value):
@@ -31,23 +42,3 @@ def json_of(key, value):
         return _json.dumps(value, allow_nan=False, default=plain_json)
     except (TypeError, ValueError) as refused:
         raise error(key, f"{key}: cannot be written as JSON: {refused}") from None
-
-
-def integer(name, value):
-    try:
-        number = value.__index__()
-    except (AttributeError, TypeError):
-        raise TypeError(f"{name}={value!r}: must be an integer") from None
-    if not -2**31 <= number < 2**31:
-        raise ValueError(f"{name}={number}: must be an integer of 32 bits")
-    return number
-
-
-def integers(name, values, count):
-    try:
-        values = tuple(values)
-    except TypeError:
-        values = ()
-    if len(values) != count:
-        raise ValueError(f"{name}: must be {count} integers")
-    return tuple(integer(name, value) for value in values)
