@@ -4,6 +4,7 @@
 # Makes the Debian packages of this working tree in clean roots of a release of Debian (SUITE: bookworm, trixie), lets lintian look at them, and
 # tries them in other clean roots, a host each: installed by apt, one command for each program, upgraded, purged. Packages and the roots that make
 # them stay in build/packaging, so that the next run compiles what changed. Needs root, and Debian's archive; from nothing an hour of two cores.
+# PACKAGES_OPTIMIZE=-O1 in the environment takes half of that: packages of a trial, which are slower and have the same bits.
 # tests/packages/test_packages.py does what can be done without.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,6 +17,7 @@ suite="${1:-bookworm}"
 [ $# -gt 0 ] || set -- oiio vtk paraview
 tests/install_packages.sh packages
 jobs="${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
+optimize="${PACKAGES_OPTIMIZE:--O3}"
 folder="$PWD/build/packaging/$suite"
 packages="$folder/packages"
 mkdir -p "$packages" "$folder/ccache"
@@ -72,7 +74,7 @@ make_packages() {
     bind /proc "$root/proc"
     rm -f "$root"/build/packages/*.deb
     in_root env CCACHE_DIR=/ccache CCACHE_SLOPPINESS=pch_defines,time_macros CMAKE_CXX_COMPILER_LAUNCHER=ccache sh -c "
-        cmake -S /anamorph -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release -DANAMORPH_TESTS=OFF -DANAMORPH_OIIO=$oiio \
+        cmake -S /anamorph -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE='$optimize -DNDEBUG' -DANAMORPH_TESTS=OFF -DANAMORPH_OIIO=$oiio \
             -DANAMORPH_TOOLKIT=$toolkit -DANAMORPH_VIEWER=$viewer -DPython3_EXECUTABLE=/usr/bin/python3 &&
         cmake --build /build -j $jobs --target packages" >"$log" 2>&1 || fail "$log"
     local deb
