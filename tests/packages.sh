@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Usage: tests/packages.sh [SUITE [oiio|vtk|paraview]...]
 # Makes the Debian packages of this working tree in clean roots of a release of Debian (SUITE: bookworm, trixie), lets lintian look at them, and
-# tries them in other clean roots, a host each: installed by apt, one command for each program, upgraded, purged. Packages and the roots that make
-# them stay in build/packaging, so that the next run compiles what changed. Needs root, and Debian's archive; from nothing an hour of two cores.
+# tries them in other clean roots, a host each: installed by apt, one command for each program, upgraded, purged. Packages, the roots that make
+# them and archives of clean ones stay in build/packaging, so that the next run compiles what changed. Needs root, and Debian's archive; from nothing an hour of two cores.
 # PACKAGES_OPTIMIZE=-O1 in the environment takes half of that: packages of a trial, which are slower and have the same bits.
 # tests/packages/test_packages.py does what can be done without.
 set -euo pipefail
@@ -51,6 +51,10 @@ clean_root() {
     mmdebstrap --quiet --variant=minbase --aptopt='APT::Install-Recommends "false"' --aptopt='Acquire::Check-Valid-Until "false"' \
         --dpkgopt=force-unsafe-io ${list:+--include="$list"} "$suite" "$1" || return
     [ ! -d "$1" ] || chmod 755 "$1" # as apt's own user finds it elsewhere
+}
+# clean_archive HOST [PACKAGE...]: a clean root for a host, which is made the first time.
+clean_archive() {
+    [ -e "$folder/clean-$1.tar" ] || { clean_root "$folder/new.tar" "${@:2}" && mv "$folder/new.tar" "$folder/clean-$1.tar"; }
 }
 section() {
     sed -n "/^\[$1\]$/,/^\[/{/^[a-z0-9]/p}" tests/packages.txt
@@ -100,7 +104,9 @@ try_packages() {
     tried="$(mktemp -d)"
     root="$tried"
     echo "$host: a clean root of $suite"
-    clean_root "$root" "${@:4}" >"$log" 2>&1 || fail "$log"
+    clean_archive "$host" "${@:4}" >"$log" 2>&1 || fail "$log"
+    tar -C "$root" -xf "$folder/clean-$host.tar"
+    chmod 755 "$root" # as apt's own user finds it elsewhere
     bind /proc "$root/proc" # anamorph finds the plugin by what it says
     mkdir -p "$root/dev/shm" "$root/tmp/packages"
     bind /dev/shm "$root/dev/shm"
@@ -136,9 +142,9 @@ try_image() {
     export BUILDAH_ISOLATION=chroot
     tried="$(mktemp -d)"
     echo "image: Dockerfile with packages of $suite"
-    clean_root "$tried/base.tar" >"$log" 2>&1 || fail "$log"
+    clean_archive image >"$log" 2>&1 || fail "$log"
     container="$(image from scratch)"
-    image add "$container" "$tried/base.tar" / >"$log" 2>&1 || fail "$log"
+    image add "$container" "$folder/clean-image.tar" / >"$log" 2>&1 || fail "$log"
     image config --env PATH=/usr/sbin:/usr/bin:/sbin:/bin "$container"
     image commit -q "$container" "docker.io/library/debian:$suite-slim" >"$log" 2>&1 || fail "$log"
     image build -t tried --build-arg "DEBIAN=$suite" -f plugins/packages/Dockerfile "$packages" >"$log" 2>&1 || fail "$log"
