@@ -26,7 +26,8 @@ mkdir -p "$packages" "$folder/ccache"
 root="" mounted=() tried=""
 leave() {
     local at
-    for at in "${mounted[@]}"; do umount "$at" || return; done # or what is mounted would be removed
+    # What an interrupted run began may still be using it.
+    for at in "${mounted[@]}"; do umount "$at" 2>/dev/null || umount --lazy "$at" || return; done # or what is mounted would be removed
     mounted=()
     [ -z "$tried" ] || rm -rf "$tried"
     tried=""
