@@ -3,9 +3,16 @@
 // compiled for every instruction set Highway knows.
 //
 // Displacements are added as whole numbers of a resolution, a power of two: V F / resolution is rounded to
-// the nearest whole number, ties to even, so adding a term and adding it with V of the other sign cancel to
+// the nearest whole number, so adding a term and adding it with V of the other sign cancel to
 // the bit, and order does not matter. Each component of V / resolution is less than kMostUnits, and so is
 // what is added at once. Contributions err by half a unit, and relatively by kKernelError 2^-53.
+//
+// What is rounded is the exact product of a weight w, V / resolution and perhaps a factor of F, and of a share f <= 1, the rest of F, of
+// which the last bit is 1 where it is not 0. The product never lies in the middle of two whole numbers: as w < 2^50 is a multiple of
+// some power of two up to 2^49 and of no greater one, and f of one up to 2^-52, w f is a multiple of 2^-3 at most, and not of
+// twice that. So where a sum of whole numbers is below kMostInDouble, it does not matter whether a product is rounded before it is added to
+// the sum or as the sum with it is, once: a sum that stands next to 3 * 2^51, where doubles are the whole numbers, takes one fused
+// multiplication and addition.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +22,13 @@ namespace anamorph::simd {
 
 /// The largest magnitude that is rounded by adding 1.5 * 2^52.
 inline constexpr double kMostUnits = 0x1p50;
+/// Sums up to this magnitude, and one term more, are whole numbers where doubles next to 1.5 * 2^52 are.
+inline constexpr double kMostInDouble = 0x1p50;
 /// The error of a kernel's value, in units of 2^-53: the distance over the extent errs by 2.5, times the
-/// kernel's greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; the exponential function and
-/// products by 8.
+/// kernel's greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; exponential functions err by 4, the
+/// weight by 1, and the last bit of the share makes 2. Wendland's kernel: deep ones below, r off by 3.5, and 2 for the last bit.
 inline constexpr double kKernelError = 16;
-/// The same of a bump with depth or side. Three ways: 2.5 * 0.74 each, and 12 for exponential functions and products; Wendland's
+/// The same of a bump with depth or side. Three ways: 2.5 * 0.74 each, and 12 for exponential functions, products and the last bit; Wendland's
 /// kernel changes by |r F'(r)| = 20 r^2 (1 - r)^3 <= 0.7 where r errs by 4.5, and its polynomial errs by 10. S errs by 3, its
 /// greatest slope, times 9 units of n . V / |V| (its direction errs by 3, of each product one, and two sums), and by 6 of its own.
 inline constexpr double kDeepError = 64;
@@ -37,6 +46,7 @@ inline constexpr int kPointBlock = 8;  ///< points handled together; cells of po
 struct AxisKernel {
     double center, inverse_extent, reach;
     bool gaussian;
+    bool shares = false;  ///< are Gaussians' factors, without slopes, the shares of products (above)?
 };
 /// out[i] = the factor at x[i], slope[i] = its derivative by x, unless slope is null. count: any.
 void axis_factors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope);
@@ -44,8 +54,9 @@ void axis_factors(const AxisKernel& kernel, const double* x, int count, double* 
 /// A deformation over a grid. Gaussian: F = column[i] row[j]; otherwise F is Wendland's function of
 /// r^2 = column[i] + row[j].
 struct GridTerm {
-    const double* column;  ///< values for columns [column_begin, column_end), multiples of kGridBlock
-    const double* row;     ///< values for rows [row_begin, row_end), multiples of kGridRows
+    const double*
+        column;  ///< values for columns [column_begin, column_end), multiples of kGridBlock; Gaussians': shares
+    const double* row;  ///< values for rows [row_begin, row_end), multiples of kGridRows
     int column_begin, column_end, row_begin, row_end;
     double units[3];  ///< V / resolution
     bool gaussian;
@@ -71,9 +82,10 @@ struct GridBand {
     double resolution;
     const double* offset;  ///< laid out as base is
     const T* base;
-    T* out;       ///< null: sums only
-    bool all;     ///< write blocks too that no term reaches
-    bool stream;  ///< write past the caches: for surfaces larger than these
+    T* out;          ///< null: sums only
+    bool all;        ///< write blocks too that no term reaches
+    bool stream;     ///< write past the caches: for surfaces larger than these
+    bool in_double;  ///< are all sums up to kMostInDouble, before, on the way and after?
 };
 void deform_band(const GridBand<float>& band);
 void deform_band(const GridBand<double>& band);
@@ -101,9 +113,9 @@ struct TermPoints {
 /// The derivatives that terms with depth or side have: by u, v, w and the three coordinates of the normal, three components each.
 inline constexpr int kPlainSlopes = 6, kDeepSlopes = 18;
 
-/// Adds terms to sums[c][i] of points. count: a multiple of kPointBlock; NaN points get nothing.
+/// Adds terms to sums[c][i] of points. count: a multiple of kPointBlock; NaN points get nothing. in_double: as in GridBand.
 void deform_points(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
-                   std::size_t count, std::int64_t* const sums[3]);
+                   std::size_t count, std::int64_t* const sums[3], bool in_double);
 /// Adds V dF/du to slopes[0], slopes[1] and slopes[2], V dF/dv to slopes[3], slopes[4] and slopes[5], and so on where points have w
 /// (kDeepSlopes), term after term; all instruction sets give the same bits.
 void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
@@ -111,7 +123,7 @@ void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, con
 /// Does what deform_points() and add_point_slopes() do, with the same bits.
 void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count,
                                const TermPoints& points, std::size_t count, std::int64_t* const sums[3],
-                               double* const* slopes);
+                               double* const* slopes, bool in_double);
 
 /// A deformation over a stretch of one row of a grid, with the derivatives of its factors (axis_factors).
 struct RowTerm {

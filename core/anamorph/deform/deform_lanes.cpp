@@ -33,20 +33,85 @@ using VI = hn::Vec<DI>;
 using L = Lanes<D>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 
-/// A number in [-2^51, 2^51] plus this has the rounded number in its last bits.
+/// A whole number in [-2^51, 2^51] plus this has that number in its last bits, and next to it doubles are whole numbers.
 constexpr double kRounder = 0x1.8p52;
 constexpr std::int64_t kRounderBits = 0x4338000000000000;
 
-/// sum + round(a b), and kRounderBits too many. The product is rounded on its own: all instruction sets give
-/// the same bits.
-HWY_INLINE VI AddRounded(VI sum, V a, V b) {
-    return hn::Add(sum, hn::BitCast(DI(), hn::Add(hn::Mul(a, b), hn::Set(D(), kRounder))));
+HWY_INLINE V WithRounder(VI whole) {
+    return hn::BitCast(D(), hn::Add(whole, hn::Set(DI(), kRounderBits)));
 }
-/// Takes away what `times` calls of AddRounded added too many, modulo 2^64.
-HWY_INLINE VI WithoutRounders(VI sum, std::size_t times) {
-    const auto bits = static_cast<std::uint64_t>(kRounderBits) * static_cast<std::uint64_t>(times);
-    return hn::Sub(sum, hn::Set(DI(), static_cast<std::int64_t>(bits)));
+HWY_INLINE VI WithoutRounder(V sum) {
+    return hn::Sub(hn::BitCast(DI(), sum), hn::Set(DI(), kRounderBits));
 }
+
+/// The share of V that a point moves by, as products are made of it: with the last bit 1, or 0 (deform_kernels.h).
+HWY_INLINE V ShareOf(V factor) {
+    const V odd = hn::BitCast(D(), hn::Or(hn::BitCast(DI(), factor), hn::Set(DI(), 1)));
+    return hn::IfThenElseZero(hn::Gt(factor, hn::Zero(D())), odd);
+}
+
+#if !HWY_NATIVE_FMA
+/// The rest a b - round(a b), exact (Dekker 1971).
+HWY_INLINE V RestOfProduct(V a, V b, V product) {
+    const auto upper_half = [](V x) HWY_ATTR {
+        const V c = hn::Mul(x, hn::Set(D(), 0x1p27 + 1));
+        return hn::Sub(c, hn::Sub(c, x));
+    };
+    const V a1 = upper_half(a), a2 = hn::Sub(a, a1), b1 = upper_half(b), b2 = hn::Sub(b, b1);
+    const V above = hn::Sub(hn::Mul(a1, b1), product);
+    return hn::Add(hn::Add(hn::Add(above, hn::Mul(a1, b2)), hn::Mul(a2, b1)), hn::Mul(a2, b2));
+}
+/// Of a sum that was rounded half a unit away from what the rounded product made it, the one on the side that the product's rest
+/// points to.
+HWY_NOINLINE V OnTheSideOfRest(V sum, V off, V a, V b, V product) {
+    const V rest = RestOfProduct(a, b, product);
+    const auto beyond =
+        hn::And(hn::Eq(hn::Abs(off), hn::Set(D(), 0.5)), hn::Gt(hn::Mul(off, rest), hn::Zero(D())));
+    return hn::Add(sum, hn::IfThenElseZero(beyond, hn::Add(off, off)));
+}
+#endif
+
+/// sum + a b, rounded once to a whole number: `sum` is a whole number and kRounder, a a weight and b a share.
+HWY_INLINE V AddRounded(V sum, V a, V b) {
+#if HWY_NATIVE_FMA
+    return hn::MulAdd(a, b, sum);
+#else
+    const V product = hn::Mul(a, b), rounded = hn::Add(sum, product);
+    // Exact. A product that was rounded cannot have crossed the middle of two whole numbers, but it may have come to lie on it.
+    const V off = hn::Sub(product, hn::Sub(rounded, sum));
+    if (HWY_UNLIKELY(!hn::AllFalse(D(), hn::Eq(hn::Abs(off), hn::Set(D(), 0.5)))))
+        return OnTheSideOfRest(rounded, off, a, b, product);
+    return rounded;
+#endif
+}
+
+/// The sum of rounded products, a whole number, in lanes. kInDouble: none is beyond kMostInDouble on the way; the bits are the same.
+template <bool kInDouble>
+class WholeSum {
+  public:
+    HWY_INLINE void load(const std::int64_t* from) {
+        const VI whole = hn::LoadU(DI(), from);
+        if constexpr (kInDouble)
+            m_sum = WithRounder(whole);
+        else
+            m_sum = whole;
+    }
+    HWY_INLINE void add(V weight, V share) {
+        if constexpr (kInDouble)
+            m_sum = AddRounded(m_sum, weight, share);
+        else
+            m_sum = hn::Add(m_sum, WithoutRounder(AddRounded(hn::Set(D(), kRounder), weight, share)));
+    }
+    HWY_INLINE void store(std::int64_t* to) const {
+        if constexpr (kInDouble)
+            hn::StoreU(WithoutRounder(m_sum), DI(), to);
+        else
+            hn::StoreU(m_sum, DI(), to);
+    }
+
+  private:
+    std::conditional_t<kInDouble, V, VI> m_sum;
+};
 
 /// A number and its derivative: as much of a number as kernels ask for.
 struct Slope {
@@ -118,7 +183,8 @@ void AxisFactors(const AxisKernel& kernel, const double* x, int count, double* o
     const auto at = [&](const double* from, double* to, double* slope_to) HWY_ATTR {
         const L t = DistanceOf(kernel, L::load(from));
         if (!slope_to) {
-            CutFactorOf<L>(kernel, t).store(to);
+            const L factor = CutFactorOf<L>(kernel, t);
+            (kernel.shares && kernel.gaussian ? L(ShareOf(factor.v)) : factor).store(to);
             return;
         }
         const Slope factor = CutFactorOf<Slope>(kernel, t);
@@ -153,50 +219,61 @@ PairTerm OnRows(const GridTerm& term, int row) {
     return pair;
 }
 
-// Sums that stay in registers: two rows, three components, and as many vectors as there is room for.
-constexpr int kAcross = HWY_TARGET <= HWY_AVX3 ? 4 : 1;
-constexpr int kStep = std::min(kAcross * kLanes, kGridBlock);
-constexpr int kVectors = kStep / kLanes;
+/// As many vectors of columns as there is room for in registers, with the sums of two rows and three components; Wendland's function
+/// takes some itself.
+template <bool kGaussian>
+constexpr int kAcross = HWY_TARGET <= HWY_AVX3       ? 4
+                        : HWY_NATIVE_FMA&& kGaussian ? 2
+                                                     : 1;
 
 constexpr int kBlockSums = 3 * kGridRows * kGridBlock;
 
-/// Adds terms to a block of kGridBlock columns from `column` on; sums as in grid_sums().
-void AddToBlock(const PairTerm* const* terms, std::size_t count, int column, std::int64_t* sums) {
+/// The shares of a term in one of its rows. columns: of its table.
+template <bool kGaussian>
+HWY_INLINE V ShareInRow(const PairTerm& term, int r, V columns) {
+    if constexpr (kGaussian) return columns;
+    return ShareOf(wendland_of(L(hn::Add(columns, hn::Set(D(), term.row[r])))).v);
+}
+
+/// Adds terms of one kernel to a block of kGridBlock columns from `column` on; sums as in grid_sums().
+template <bool kInDouble, bool kGaussian>
+void AddToBlock(const std::vector<const PairTerm*>& terms, int column, std::int64_t* sums) {
+    if (terms.empty()) return;
+    constexpr int kStep = std::min(kAcross<kGaussian> * kLanes, kGridBlock), kVectors = kStep / kLanes;
     const D d;
-    const DI di;
     for (int at = 0; at < kGridBlock; at += kStep) {
-        VI sum[kGridRows][3][kVectors];
+        WholeSum<kInDouble> sum[kGridRows][3][kVectors];
         const auto place = [&](int r, int c, int v) {
             return sums + (3 * r + c) * kGridBlock + at + v * kLanes;
         };
         for (int r = 0; r < kGridRows; ++r)
             for (int c = 0; c < 3; ++c)
-                for (int v = 0; v < kVectors; ++v)
-                    sum[r][c][v] = WithoutRounders(hn::LoadU(di, place(r, c, v)), count);
-        for (std::size_t k = 0; k < count; ++k) {
-            const PairTerm& term = *terms[k];
+                for (int v = 0; v < kVectors; ++v) sum[r][c][v].load(place(r, c, v));
+        const PairTerm* const* of = terms.data();
+        do {  // not once is no case of its own
+            const PairTerm& term = **of;
             const double* from = term.column + (column - term.column_begin) + at;
-            for (int v = 0; v < kVectors; ++v) {
-                const V across = hn::LoadU(d, from + v * kLanes);
-                for (int r = 0; r < kGridRows; ++r) {
-                    const V f =
-                        term.gaussian ? across : wendland_of(L(hn::Add(across, hn::Set(d, term.row[r])))).v;
-                    for (int c = 0; c < 3; ++c)
-                        sum[r][c][v] = AddRounded(sum[r][c][v], hn::Set(d, term.weight[r][c]), f);
+            for (int r = 0; r < kGridRows; ++r) {
+                V shares[kVectors];
+                for (int v = 0; v < kVectors; ++v)
+                    shares[v] = ShareInRow<kGaussian>(term, r, hn::LoadU(d, from + v * kLanes));
+                for (int c = 0; c < 3; ++c) {
+                    const V weight = hn::Set(d, term.weight[r][c]);
+                    for (int v = 0; v < kVectors; ++v) sum[r][c][v].add(weight, shares[v]);
                 }
             }
-        }
+        } while (++of != terms.data() + terms.size());
         for (int r = 0; r < kGridRows; ++r)
             for (int c = 0; c < 3; ++c)
-                for (int v = 0; v < kVectors; ++v) hn::StoreU(sum[r][c][v], di, place(r, c, v));
+                for (int v = 0; v < kVectors; ++v) sum[r][c][v].store(place(r, c, v));
     }
 }
 
-HWY_INLINE V LoadDoubles(const float*, hn::Vec<hn::Rebind<float, D>> v) {
-    return hn::PromoteTo(D(), v);
+HWY_INLINE V LoadAsDoubles(const float* from) {
+    return hn::PromoteTo(D(), hn::LoadU(hn::Rebind<float, D>(), from));
 }
-HWY_INLINE V LoadDoubles(const double*, V v) {
-    return v;
+HWY_INLINE V LoadAsDoubles(const double* from) {
+    return hn::LoadU(D(), from);
 }
 HWY_INLINE hn::Vec<hn::Rebind<float, D>> StoreAs(const float*, V v) {
     return hn::DemoteTo(hn::Rebind<float, D>(), v);
@@ -207,51 +284,71 @@ HWY_INLINE V StoreAs(const double*, V v) {
 
 constexpr std::uintptr_t kStreamed = 16;  ///< bytes that are written past the caches at once
 
-/// Writes points; past the caches if `stream`, to multiples of kStreamed.
-template <class T, class VT>
-HWY_INLINE void StorePoints(VT x, VT y, VT z, bool stream, T* out) {
+/// Writes numbers; past the caches if `stream`, to multiples of kStreamed.
+template <class T>
+HWY_INLINE void StoreNumbers(V v, bool stream, T* out) {
     const hn::Rebind<T, D> dt;
-    constexpr int kValues = 3 * kLanes, kPart = static_cast<int>(kStreamed / sizeof(T));
-    if (!stream || kValues % kPart != 0) {
-        hn::StoreInterleaved3(x, y, z, dt, out);
-        return;
+    const auto numbers = StoreAs(out, v);
+    constexpr int kPart = static_cast<int>(kStreamed / sizeof(T));
+    if constexpr (kLanes % kPart == 0) {
+        if (stream) {
+            if constexpr (kLanes == kPart) {
+                hn::Stream(numbers, dt, out);
+            } else {
+                HWY_ALIGN T values[kLanes];
+                hn::Store(numbers, dt, values);
+                const hn::CappedTag<T, kPart> part;
+                constexpr int kAtOnce = static_cast<int>(hn::MaxLanes(part));
+                for (int i = 0; i < kLanes; i += kAtOnce)
+                    hn::Stream(hn::Load(part, values + i), part, out + i);
+            }
+            return;
+        }
     }
-    HWY_ALIGN T values[kValues];
-    hn::StoreInterleaved3(x, y, z, dt, values);
-    const hn::CappedTag<T, kPart> part;
-    constexpr int kAtOnce = static_cast<int>(hn::MaxLanes(part));
-    for (int i = 0; i < kValues; i += kAtOnce) hn::Stream(hn::Load(part, values + i), part, out + i);
+    hn::StoreU(numbers, dt, out);
 }
 
-/// Three numbers a point, of the points of a vector.
-template <class T>
-HWY_INLINE void LoadPoints(const T* from, V (&to)[3]) {
-    const hn::Rebind<T, D> dt;
-    hn::Vec<decltype(dt)> x, y, z;
-    hn::LoadInterleaved3(dt, from, x, y, z);
-    to[0] = LoadDoubles(from, x);
-    to[1] = LoadDoubles(from, y);
-    to[2] = LoadDoubles(from, z);
+/// x, y and z of the points of a vector, point by point.
+HWY_INLINE void PointByPoint(V (&p)[3]) {
+#if HWY_TARGET == HWY_AVX2
+    // As Highway stores them interleaved, but not to memory.
+    const D d;
+    const V xy = hn::InterleaveLower(d, p[0], p[1]), yz = hn::InterleaveUpper(d, p[1], p[2]),
+            zx = hn::OddEven(p[0], p[2]);
+    p[0] = hn::ConcatLowerLower(d, zx, xy);
+    p[1] = hn::ConcatUpperLower(d, xy, yz);
+    p[2] = hn::ConcatUpperUpper(d, yz, zx);
+#else
+    HWY_ALIGN double numbers[3 * kLanes];
+    hn::StoreInterleaved3(p[0], p[1], p[2], D(), numbers);
+    for (int c = 0; c < 3; ++c) p[c] = hn::Load(D(), numbers + c * kLanes);
+#endif
 }
 
 /// out = base + (offset + sums * resolution) for `count` <= kGridBlock points of a row, without gaps. The
 /// product is exact.
-template <class T>
+template <bool kInDouble, class T>
 void WritePoints(const std::int64_t* sums, int count, double resolution, bool stream, const double* offset,
                  const T* base, T* out) {
     const D d;
     const DI di;
-    const V unit = hn::Set(d, resolution);
+    const V unit = hn::Set(d, resolution), zero = hn::Zero(d);
     int i = 0;
     for (; i + kLanes <= count; i += kLanes) {
-        V p[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)}, more[3] = {p[0], p[0], p[0]};
-        if (base) LoadPoints(base + 3 * i, p);
-        if (offset) LoadPoints(offset + 3 * i, more);
+        V p[3];
         for (int c = 0; c < 3; ++c) {
-            const V sum = hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i));
-            p[c] = hn::Add(hn::Add(hn::Mul(sum, unit), more[c]), p[c]);
+            const VI sum = hn::LoadU(di, sums + c * kGridBlock + i);
+            const V whole =
+                kInDouble ? hn::Sub(WithRounder(sum), hn::Set(d, kRounder)) : hn::ConvertTo(d, sum);
+            p[c] = hn::Mul(whole, unit);
         }
-        StorePoints(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), stream, out + 3 * i);
+        PointByPoint(p);
+        for (int c = 0; c < 3; ++c) {
+            const int at = 3 * i + c * kLanes;
+            const V more = offset ? LoadAsDoubles(offset + at) : zero;
+            const V start = base ? LoadAsDoubles(base + at) : zero;
+            StoreNumbers(hn::Add(hn::Add(p[c], more), start), stream, out + at);
+        }
     }
     for (; i < count; ++i)
         for (int c = 0; c < 3; ++c) {
@@ -262,11 +359,11 @@ void WritePoints(const std::int64_t* sums, int count, double resolution, bool st
         }
 }
 
-template <class T>
-void DeformBand(const GridBand<T>& band) {
+template <bool kInDouble, class T>
+void DrawBand(const GridBand<T>& band) {
     HWY_ALIGN std::int64_t room[kBlockSums];
     std::vector<PairTerm> on_rows;
-    std::vector<const PairTerm*> on_block;
+    std::vector<const PairTerm*> gaussians, others;
     for (int row = band.row_begin; row < band.row_end; row += kGridRows) {
         on_rows.clear();
         for (std::size_t k = 0; k < band.count; ++k)
@@ -274,29 +371,36 @@ void DeformBand(const GridBand<T>& band) {
                 on_rows.push_back(OnRows(band.terms[k], row));
         if (on_rows.empty() && !band.all) continue;
         for (int column = 0; column < band.columns; column += kGridBlock) {
-            on_block.clear();
+            gaussians.clear();
+            others.clear();
             for (const PairTerm& term : on_rows)
-                if (term.column_begin <= column && column < term.column_end) on_block.push_back(&term);
-            if (on_block.empty() && !band.all) continue;
+                if (term.column_begin <= column && column < term.column_end)
+                    (term.gaussian ? gaussians : others).push_back(&term);
+            if (gaussians.empty() && others.empty() && !band.all) continue;
             std::int64_t* sums = room;
             if (band.sums)
                 sums = band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column};
             else
                 std::memset(room, 0, sizeof(room));
-            if (!on_block.empty()) AddToBlock(on_block.data(), on_block.size(), column, sums);
+            AddToBlock<kInDouble, true>(gaussians, column, sums);
+            AddToBlock<kInDouble, false>(others, column, sums);
             if (!band.out) continue;
             const int count = std::min(kGridBlock, band.columns - column);
             for (int r = 0; r < kGridRows && row + r < band.row_end; ++r) {
                 const std::ptrdiff_t first = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
                 T* const out = band.out + first;
                 const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
-                WritePoints(sums + 3 * r * kGridBlock, count, band.resolution, stream,
-                            band.offset ? band.offset + first : nullptr,
-                            band.base ? band.base + first : nullptr, out);
+                WritePoints<kInDouble>(sums + 3 * r * kGridBlock, count, band.resolution, stream,
+                                       band.offset ? band.offset + first : nullptr,
+                                       band.base ? band.base + first : nullptr, out);
             }
         }
     }
     if (band.stream) hwy::FlushStream();
+}
+template <class T>
+void DeformBand(const GridBand<T>& band) {
+    band.in_double ? DrawBand<true>(band) : DrawBand<false>(band);
 }
 void DeformBandFloat(const GridBand<float>& band) {
     DeformBand(band);
@@ -413,13 +517,13 @@ HWY_INLINE void AddDeepSlopes(const PointTerm& term, const Slope (&ways)[3], con
         for (int c = 0; c < 3; ++c) sum[3 * k + c] = sum[3 * k + c] + L(term.vector[c]) * by[k];
 }
 
-/// Adds a term with depth or side at the points of a vector. True if it reaches any.
-template <bool kSums, bool kSlopes>
-HWY_INLINE bool AddDeepTerm(const PointTerm& term, const TermPoints& points, std::size_t i, VI (&sum)[3],
+/// Adds a term with depth or side at the points of a vector.
+template <bool kSums, bool kSlopes, class Sum>
+HWY_INLINE void AddDeepTerm(const PointTerm& term, const TermPoints& points, std::size_t i, Sum (&sum)[3],
                             L (&slope)[kDeepSlopes]) {
     const DeepWays at(term, points, i);
     const L::M inside = at.inside;
-    if (hn::AllFalse(D(), inside.m)) return false;
+    if (hn::AllFalse(D(), inside.m)) return;
     Slope share(1.0);
     if (term.has_side) {
         L facing(0.0);
@@ -434,35 +538,32 @@ HWY_INLINE bool AddDeepTerm(const PointTerm& term, const TermPoints& points, std
     if constexpr (kSums) {
         const L f = term.gaussian ? ways[0].value * ways[1].value * ways[2].value
                                   : wendland_of(ways[0].value + ways[1].value + ways[2].value);
-        const L whole = ZeroUnless(inside, f * share.value);
-        for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], hn::Set(D(), term.units[c]), whole.v);
+        const V whole = ShareOf(ZeroUnless(inside, f * share.value).v);
+        for (int c = 0; c < 3; ++c) sum[c].add(hn::Set(D(), term.units[c]), whole);
     }
     if constexpr (kSlopes) AddDeepSlopes(term, ways, share, slope);
-    return true;
 }
 
-/// Adds terms at points to displacements, to slopes, or to both. kDeep: points have depths and normals.
-template <bool kSums, bool kSlopes, bool kDeep>
+/// Adds terms at points to displacements, to slopes, or to both. kDeep: points have depths and normals. kInDouble: WholeSum's.
+template <bool kSums, bool kSlopes, bool kDeep, bool kInDouble>
 HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                             std::size_t count, std::int64_t* const* sums, double* const* slopes) {
     using Factor = std::conditional_t<kSlopes, Slope, L>;
     constexpr int kSlopeCount = kDeep ? kDeepSlopes : kPlainSlopes;
     const D d;
-    const DI di;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
         const L pu = L::load(points.u + i), pv = L::load(points.v + i);
-        VI sum[3];
+        WholeSum<kInDouble> sum[3];
         L slope[kSlopeCount];
         if constexpr (kSums)
-            for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
+            for (int c = 0; c < 3; ++c) sum[c].load(sums[c] + i);
         if constexpr (kSlopes)
             for (int c = 0; c < kSlopeCount; ++c) slope[c] = L::load(slopes[c] + i);
-        std::size_t added = 0;
         for (std::size_t k = 0; k < term_count; ++k) {
             const PointTerm& term = *terms[k];
             if constexpr (kDeep)
                 if (term.has_depth || term.has_side) {
-                    if (AddDeepTerm<kSums, kSlopes>(term, points, i, sum, slope)) ++added;
+                    AddDeepTerm<kSums, kSlopes>(term, points, i, sum, slope);
                     continue;
                 }
             const AtPoints at(term, pu, pv);
@@ -476,36 +577,39 @@ HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_coun
                                 ? ValueOf(across)
                                 : ZeroUnless(at.inside, wendland_of(ValueOf(across) + ValueOf(down)));
                 const L weight = term.gaussian ? ZeroUnless(at.inside, ValueOf(down)) : L(1.0);
-                for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], (L(term.units[c]) * weight).v, f.v);
-                ++added;
+                const V share = ShareOf(f.v);
+                for (int c = 0; c < 3; ++c) sum[c].add((L(term.units[c]) * weight).v, share);
             }
             if constexpr (kSlopes) AddSlopes(across, down, term.gaussian, term.vector, slope);
         }
         if constexpr (kSums)
-            for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
+            for (int c = 0; c < 3; ++c) sum[c].store(sums[c] + i);
         if constexpr (kSlopes)
             for (int c = 0; c < kSlopeCount; ++c) slope[c].store(slopes[c] + i);
     }
 }
-template <bool kSums, bool kSlopes>
+template <bool kSums, bool kSlopes, bool kInDouble>
 void AddTerms(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
               std::size_t count, std::int64_t* const* sums, double* const* slopes) {
     if (points.w)
-        AddAtPoints<kSums, kSlopes, true>(terms, term_count, points, count, sums, slopes);
+        AddAtPoints<kSums, kSlopes, true, kInDouble>(terms, term_count, points, count, sums, slopes);
     else
-        AddAtPoints<kSums, kSlopes, false>(terms, term_count, points, count, sums, slopes);
+        AddAtPoints<kSums, kSlopes, false, kInDouble>(terms, term_count, points, count, sums, slopes);
 }
 void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
-                  std::size_t count, std::int64_t* const* sums) {
-    AddTerms<true, false>(terms, term_count, points, count, sums, nullptr);
+                  std::size_t count, std::int64_t* const* sums, bool in_double) {
+    (in_double ? AddTerms<true, false, true> : AddTerms<true, false, false>)(terms, term_count, points, count,
+                                                                             sums, nullptr);
 }
 void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                     std::size_t count, double* const* slopes) {
-    AddTerms<false, true>(terms, term_count, points, count, nullptr, slopes);
+    AddTerms<false, true, true>(terms, term_count, points, count, nullptr, slopes);
 }
 void DeformPointsWithSlopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
-                            std::size_t count, std::int64_t* const* sums, double* const* slopes) {
-    AddTerms<true, true>(terms, term_count, points, count, sums, slopes);
+                            std::size_t count, std::int64_t* const* sums, double* const* slopes,
+                            bool in_double) {
+    (in_double ? AddTerms<true, true, true> : AddTerms<true, true, false>)(terms, term_count, points, count,
+                                                                           sums, slopes);
 }
 
 /// The vector of length 1 in the same direction; 0 where the length is 0 or not finite.
@@ -562,14 +666,6 @@ void CornerNormals(const CornerEdges& corners, double unit, std::size_t count, d
     }
 }
 
-/// Values i, i + 1, ... of `from` as doubles.
-HWY_INLINE V At(const float* from, std::size_t i) {
-    return hn::PromoteTo(D(), hn::LoadU(hn::Rebind<float, D>(), from + i));
-}
-HWY_INLINE V At(const double* from, std::size_t i) {
-    return hn::LoadU(D(), from + i);
-}
-
 template <class T>
 void Blend(const T* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
            T* out) {
@@ -581,10 +677,10 @@ void Blend(const T* const* shapes, const double* weights, std::size_t shape_coun
         V a = hn::Zero(d), b = a, c = a, e = a;
         for (std::size_t k = 0; k < shape_count; ++k) {
             const V w = hn::Set(d, weights[k]);
-            a = hn::Add(hn::Mul(w, At(shapes[k], i)), a);
-            b = hn::Add(hn::Mul(w, At(shapes[k], i + kLane)), b);
-            c = hn::Add(hn::Mul(w, At(shapes[k], i + 2 * kLane)), c);
-            e = hn::Add(hn::Mul(w, At(shapes[k], i + 3 * kLane)), e);
+            a = hn::Add(hn::Mul(w, LoadAsDoubles(shapes[k] + i)), a);
+            b = hn::Add(hn::Mul(w, LoadAsDoubles(shapes[k] + i + kLane)), b);
+            c = hn::Add(hn::Mul(w, LoadAsDoubles(shapes[k] + i + 2 * kLane)), c);
+            e = hn::Add(hn::Mul(w, LoadAsDoubles(shapes[k] + i + 3 * kLane)), e);
         }
         hn::StoreU(StoreAs(out, a), dt, out + i);
         hn::StoreU(StoreAs(out, b), dt, out + i + kLane);
@@ -624,7 +720,8 @@ void BlendMasked(const T* const* shapes, const float* const* masks, const double
     };
     std::size_t i = 0;
     for (; i + static_cast<std::size_t>(kLanes) <= count; i += static_cast<std::size_t>(kLanes)) {
-        const V sum = sum_at(D(), i, [](D, const auto* p, std::size_t at) HWY_ATTR { return At(p, at); });
+        const V sum =
+            sum_at(D(), i, [](D, const auto* p, std::size_t at) HWY_ATTR { return LoadAsDoubles(p + at); });
         hn::StoreU(StoreAs(out, sum), hn::Rebind<T, D>(), out + i);
     }
     for (; i < count; ++i) {
@@ -689,13 +786,13 @@ void deform_band(const GridBand<double>& band) {
     HWY_DYNAMIC_DISPATCH(DeformBandDouble)(band);
 }
 void deform_points(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
-                   std::size_t count, std::int64_t* const sums[3]) {
-    HWY_DYNAMIC_DISPATCH(DeformPoints)(terms, term_count, points, count, sums);
+                   std::size_t count, std::int64_t* const sums[3], bool in_double) {
+    HWY_DYNAMIC_DISPATCH(DeformPoints)(terms, term_count, points, count, sums, in_double);
 }
 void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count,
                                const TermPoints& points, std::size_t count, std::int64_t* const sums[3],
-                               double* const* slopes) {
-    HWY_DYNAMIC_DISPATCH(DeformPointsWithSlopes)(terms, term_count, points, count, sums, slopes);
+                               double* const* slopes, bool in_double) {
+    HWY_DYNAMIC_DISPATCH(DeformPointsWithSlopes)(terms, term_count, points, count, sums, slopes, in_double);
 }
 void blend(const float* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
            float* out) {

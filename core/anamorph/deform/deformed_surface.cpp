@@ -66,7 +66,7 @@ struct Axis {
 };
 
 Axis add_axis(std::span<const double> values, double center, double extent, bool gaussian, double reach,
-              int block, LineVector<double>& tables) {
+              int block, bool shares, LineVector<double>& tables) {
     const double inverse = 1 / extent;
     const auto [first, last] = reached(values, center, inverse, reach);
     if (first == last) return {};
@@ -74,7 +74,8 @@ Axis add_axis(std::span<const double> values, double center, double extent, bool
     tables.resize(tables.size() + static_cast<std::size_t>(axis.end - axis.begin), gaussian ? 0.0 : 2.0);
     const int count = std::min(axis.end, static_cast<int>(values.size())) - axis.begin;
     const double* from = values.data() + axis.begin;
-    simd::axis_factors({center, inverse, reach, gaussian}, from, count, tables.data() + axis.at, nullptr);
+    simd::axis_factors({center, inverse, reach, gaussian, shares}, from, count, tables.data() + axis.at,
+                       nullptr);
     return axis;
 }
 
@@ -97,8 +98,9 @@ GridTerms prepare(std::span<const Term> all, std::size_t& next, std::span<const 
         const bool gaussian = d.kernel == DeformationKernel::gaussian;
         const double reach = sum.reach(d.kernel);
         const Axis column =
-            add_axis(u, d.center.x, d.extent.x, gaussian, reach, simd::kGridBlock, ready.tables);
-        const Axis row = add_axis(v, d.center.y, d.extent.y, gaussian, reach, simd::kGridRows, ready.tables);
+            add_axis(u, d.center.x, d.extent.x, gaussian, reach, simd::kGridBlock, true, ready.tables);
+        const Axis row =
+            add_axis(v, d.center.y, d.extent.y, gaussian, reach, simd::kGridRows, false, ready.tables);
         if (column.begin == column.end || row.begin == row.end) continue;
         simd::GridTerm term{nullptr, nullptr, column.begin, column.end, row.begin, row.end, {}, gaussian};
         set_units(all[next], sum.options().resolution, term.units);
@@ -129,7 +131,7 @@ bool goes_past_caches(int columns, int rows) {
 
 /// Draws terms on bands of rows; without sums nothing is kept.
 template <class T>
-void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double resolution,
+void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double resolution, bool in_double,
                 std::int64_t* sums, const double* offsets, const T* base, T* out,
                 const ParallelFor& parallel_for) {
     constexpr int kBandRows = 16;
@@ -145,7 +147,7 @@ void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double 
         for (const simd::GridTerm& t : ready.terms)
             if (t.row_begin < band_end && begin < t.row_end) terms.push_back(t);
         simd::deform_band({terms.data(), terms.size(), begin, band_end, columns, sums, resolution, offsets,
-                           base, out, all, stream});
+                           base, out, all, stream, in_double});
     });
 }
 
@@ -255,6 +257,18 @@ double DisplacementSum::error_bound() const {
     return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
 }
 
+bool DisplacementSum::stays_in_double(std::span<const DeformationChange> changes) const {
+    // Before the changes sums were at most what they are after them and all that is changed; on the way they are at most all
+    // that is changed more. Twice is for what is rounded here and in the kernels.
+    double most_on_the_way = most();
+    for (const Term& term : terms_of(changes)) {
+        const glm::dvec3& v = term.deformation->vector;
+        most_on_the_way +=
+            2 * (std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) + m_options.resolution);
+    }
+    return 2 * most_on_the_way <= simd::kMostInDouble * m_options.resolution;
+}
+
 double DisplacementSum::most() const {
     double most = 0;
     for (int c = 0; c < 3; ++c)
@@ -305,13 +319,14 @@ GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& 
                         "there is no memory for so many");
         }
     const std::vector<Term> terms = terms_of(m_pending);
+    const bool in_double = m_sum.stays_in_double(m_pending);
     GridPart part;
     std::size_t next = 0;
     while (next < terms.size() || (all && next == 0)) {
         const GridTerms ready = prepare(terms, next, m_u, m_v, m_sum);
         const bool write_all = all && next == terms.size();
-        draw_terms(ready, write_all, columns, rows, m_sum.options().resolution, m_sums.data(), m_offsets,
-                   base, out, parallel_for);
+        draw_terms(ready, write_all, columns, rows, m_sum.options().resolution, in_double, m_sums.data(),
+                   m_offsets, base, out, parallel_for);
         hull(part, ready.part);
         if (terms.empty()) break;
     }
@@ -323,10 +338,10 @@ GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& 
         constexpr int kRowsAtOnce = 16;
         parallel_for((count + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t i) {
             const int begin = first + static_cast<int>(i) * kRowsAtOnce;
-            simd::deform_band(simd::GridBand<T>{nullptr, 0, begin,
-                                                std::min(begin + kRowsAtOnce, first + count), columns,
-                                                m_sums.data(), m_sum.options().resolution, m_offsets, nullptr,
-                                                displacement, true, goes_past_caches<T>(columns, rows)});
+            simd::deform_band(
+                simd::GridBand<T>{nullptr, 0, begin, std::min(begin + kRowsAtOnce, first + count), columns,
+                                  m_sums.data(), m_sum.options().resolution, m_offsets, nullptr, displacement,
+                                  true, goes_past_caches<T>(columns, rows), in_double});
         });
     }
     return part;
@@ -481,7 +496,7 @@ double deform_grid(const std::vector<Deformation>& list, std::span<const double>
     const GridTerms ready = prepare(terms, next, u, v, sum);
     if (next == terms.size()) {
         draw_terms<T>(ready, true, static_cast<int>(u.size()), static_cast<int>(v.size()), options.resolution,
-                      nullptr, nullptr, base, out, parallel_for);
+                      sum.stays_in_double(), nullptr, nullptr, base, out, parallel_for);
     } else {
         DeformedGrid grid({u.begin(), u.end()}, {v.begin(), v.end()}, options);
         grid.apply(changes);
@@ -742,11 +757,13 @@ template <class T>
 std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for,
                                   T* displacement) {
     const std::vector<simd::PointTerm> terms = point_terms(m_pending, m_sum);
+    const bool in_double = m_sum.stays_in_double(m_pending);
     std::atomic<std::int64_t> written = 0;
     const auto draw_cell = [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
         std::int64_t* const sums[3] = {&m_sums[0][cell.begin], &m_sums[1][cell.begin],
                                        &m_sums[2][cell.begin]};
-        simd::deform_points(near.data(), near.size(), term_points(cell.begin), cell.end - cell.begin, sums);
+        simd::deform_points(near.data(), near.size(), term_points(cell.begin), cell.end - cell.begin, sums,
+                            in_double);
         written += write_slots(cell.begin, cell.end, base, out, displacement);
     };
     if (all || !terms.empty()) each_cell(terms, all, terms, parallel_for, draw_cell);
@@ -765,6 +782,7 @@ void DeformedPoints::write_with_slopes(const std::vector<Deformation>& list, con
     m_sum = sum;
     m_pending.clear();
     const std::vector<simd::PointTerm> terms = point_terms(changes, m_sum);
+    const bool in_double = m_sum.stays_in_double();
     constexpr std::size_t kMost = SurfaceSlopes::kMost;
     each_cell({}, true, terms, parallel_for,
               [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
@@ -777,7 +795,7 @@ void DeformedPoints::write_with_slopes(const std::vector<Deformation>& list, con
                       for (int c = 0; c < 3; ++c) std::fill_n(sums[c] = &m_sums[c][at], slots, 0);
                       for (int c = 0; c < 3 * parameters; ++c) std::fill_n(slopes[c] = by[c], slots, 0.0);
                       simd::deform_points_with_slopes(near.data(), near.size(), term_points(at), slots, sums,
-                                                      slopes);
+                                                      slopes, in_double);
                       const std::int64_t points = write_slots(at, at + slots, base, out, displacement);
                       if (points > 0) take({static_cast<int>(points), 0, &m_point[at], by, parameters});
                   }

@@ -57,6 +57,8 @@ class DisplacementSum {
     double error_bound() const;
     /// A bound of the magnitude of every component of the displacement.
     double most() const;
+    /// Do the sums stay where doubles hold them (simd::kMostInDouble), while changes that the totals have are carried out in any order?
+    bool stays_in_double(std::span<const DeformationChange> changes = {}) const;
 
   private:
     struct Totals {
