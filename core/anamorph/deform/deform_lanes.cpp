@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -89,6 +91,12 @@ HWY_INLINE V AddRounded(V sum, V a, V b) {
 template <bool kInDouble>
 class WholeSum {
   public:
+    HWY_INLINE void clear() {
+        if constexpr (kInDouble)
+            m_sum = hn::Set(D(), kRounder);
+        else
+            m_sum = hn::Zero(DI());
+    }
     HWY_INLINE void load(const std::int64_t* from) {
         const VI whole = hn::LoadU(DI(), from);
         if constexpr (kInDouble)
@@ -235,10 +243,9 @@ HWY_INLINE V ShareInRow(const PairTerm& term, int r, V columns) {
     return ShareOf(wendland_of(L(hn::Add(columns, hn::Set(D(), term.row[r])))).v);
 }
 
-/// Adds terms of one kernel to a block of kGridBlock columns from `column` on; sums as in grid_sums().
+/// Adds one term or more, of one kernel, to a block of kGridBlock columns from `column` on; sums as in grid_sums(). fresh: they begin at 0.
 template <bool kInDouble, bool kGaussian>
-void AddToBlock(const std::vector<const PairTerm*>& terms, int column, std::int64_t* sums) {
-    if (terms.empty()) return;
+void AddToBlock(std::span<const PairTerm* const> terms, int column, bool fresh, std::int64_t* sums) {
     constexpr int kStep = std::min(kAcross<kGaussian> * kLanes, kGridBlock), kVectors = kStep / kLanes;
     const D d;
     for (int at = 0; at < kGridBlock; at += kStep) {
@@ -248,7 +255,11 @@ void AddToBlock(const std::vector<const PairTerm*>& terms, int column, std::int6
         };
         for (int r = 0; r < kGridRows; ++r)
             for (int c = 0; c < 3; ++c)
-                for (int v = 0; v < kVectors; ++v) sum[r][c][v].load(place(r, c, v));
+                for (int v = 0; v < kVectors; ++v)
+                    if (fresh)
+                        sum[r][c][v].clear();
+                    else
+                        sum[r][c][v].load(place(r, c, v));
         const PairTerm* const* of = terms.data();
         do {  // not once is no case of its own
             const PairTerm& term = **of;
@@ -359,40 +370,75 @@ void WritePoints(const std::int64_t* sums, int count, double resolution, bool st
         }
 }
 
+/// The terms of a pair of rows, sorted into the blocks of columns that they reach.
+class TermsOfBlocks {
+  public:
+    explicit TermsOfBlocks(int columns)
+        : m_begin(static_cast<std::size_t>((columns + kGridBlock - 1) / kGridBlock + 1)) {}
+
+    void sort(const std::vector<const PairTerm*>& terms) {
+        std::fill(m_begin.begin(), m_begin.end(), 0u);
+        for (const PairTerm* const term : terms)
+            for_blocks(*term, [&](std::size_t block) { ++m_begin[block]; });
+        std::partial_sum(m_begin.begin(), m_begin.end(), m_begin.begin());
+        m_terms.resize(m_begin.back());
+        // From the last one on: what was where a block ends becomes where it begins.
+        for (std::size_t k = terms.size(); k-- > 0;)
+            for_blocks(*terms[k], [&](std::size_t block) { m_terms[--m_begin[block]] = terms[k]; });
+    }
+    std::span<const PairTerm* const> of(int column) const {
+        const std::size_t* const begin = &m_begin[static_cast<std::size_t>(column / kGridBlock)];
+        return std::span(m_terms).subspan(begin[0], begin[1] - begin[0]);
+    }
+
+  private:
+    template <class Body>
+    static void for_blocks(const PairTerm& term, const Body& body) {
+        for (int column = term.column_begin; column < term.column_end; column += kGridBlock)
+            body(static_cast<std::size_t>(column / kGridBlock));
+    }
+
+    std::vector<std::size_t> m_begin;  ///< of each block's terms, and the end
+    std::vector<const PairTerm*> m_terms;
+};
+
 template <bool kInDouble, class T>
 void DrawBand(const GridBand<T>& band) {
     HWY_ALIGN std::int64_t room[kBlockSums];
-    std::vector<PairTerm> on_rows;
-    std::vector<const PairTerm*> gaussians, others;
+    std::vector<PairTerm> on_rows(band.count);
+    std::vector<const PairTerm*> now[2], sorted[2];  // Gaussians and others
+    TermsOfBlocks gaussians(band.columns), others(band.columns);
     for (int row = band.row_begin; row < band.row_end; row += kGridRows) {
-        on_rows.clear();
-        for (std::size_t k = 0; k < band.count; ++k)
-            if (band.terms[k].row_begin <= row && row < band.terms[k].row_end)
-                on_rows.push_back(OnRows(band.terms[k], row));
-        if (on_rows.empty() && !band.all) continue;
+        for (auto& terms : now) terms.clear();
+        for (std::size_t k = 0; k < band.count; ++k) {
+            if (row < band.terms[k].row_begin || band.terms[k].row_end <= row) continue;
+            on_rows[k] = OnRows(band.terms[k], row);
+            now[on_rows[k].gaussian ? 0 : 1].push_back(&on_rows[k]);
+        }
+        if (now[0].empty() && now[1].empty() && !band.all) continue;
+        // Next rows have mostly the same ones.
+        if (now[0] != sorted[0]) gaussians.sort(sorted[0] = now[0]);
+        if (now[1] != sorted[1]) others.sort(sorted[1] = now[1]);
         for (int column = 0; column < band.columns; column += kGridBlock) {
-            gaussians.clear();
-            others.clear();
-            for (const PairTerm& term : on_rows)
-                if (term.column_begin <= column && column < term.column_end)
-                    (term.gaussian ? gaussians : others).push_back(&term);
-            if (gaussians.empty() && others.empty() && !band.all) continue;
-            std::int64_t* sums = room;
-            if (band.sums)
-                sums = band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column};
-            else
-                std::memset(room, 0, sizeof(room));
-            AddToBlock<kInDouble, true>(gaussians, column, sums);
-            AddToBlock<kInDouble, false>(others, column, sums);
+            const std::span<const PairTerm*const> first = gaussians.of(column), then = others.of(column);
+            const bool moved = !first.empty() || !then.empty();
+            if (!moved && !band.all) continue;
+            std::int64_t* const sums =
+                band.sums ? band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column}
+                          : room;
+            const bool fresh = !band.sums;
+            if (fresh && !moved) std::memset(room, 0, sizeof(room));
+            if (!first.empty()) AddToBlock<kInDouble, true>(first, column, fresh, sums);
+            if (!then.empty()) AddToBlock<kInDouble, false>(then, column, fresh && first.empty(), sums);
             if (!band.out) continue;
             const int count = std::min(kGridBlock, band.columns - column);
             for (int r = 0; r < kGridRows && row + r < band.row_end; ++r) {
-                const std::ptrdiff_t first = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
-                T* const out = band.out + first;
+                const std::ptrdiff_t at = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
+                T* const out = band.out + at;
                 const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
                 WritePoints<kInDouble>(sums + 3 * r * kGridBlock, count, band.resolution, stream,
-                                       band.offset ? band.offset + first : nullptr,
-                                       band.base ? band.base + first : nullptr, out);
+                                       band.offset ? band.offset + at : nullptr,
+                                       band.base ? band.base + at : nullptr, out);
             }
         }
     }
