@@ -14,7 +14,7 @@ UNALIKE = re.compile(r"\b(?:\w*Mul(?:Add|Sub)\w*|Approximate\w*|MulByPow2|FastEx
 ALIKE = {
     ("number/fused-inl.h", "MulAdd"): (1, "where the instruction set rounds once"),
     ("deform/deform_lanes.cpp", "MulAdd"): (1, "what is rounded twice elsewhere is made good there"),
-    ("image/packed_blocks_lanes.cpp", "MulAdd"): (1, "the product is exact: by a power of two"),
+    ("image/packed_blocks_lanes.cpp", "MulAdd"): (2, "the products are exact: by a power of two"),
 }
 
 

@@ -42,25 +42,30 @@ struct EightWeights {
 /// The sums of what taps give to the texels around.
 class TapSums {
   public:
-    HWY_INLINE TapSums(hn::Vec<Floats> v_x, hn::Vec<Floats> v_y, int taps)
-        : m_vx(v_x), m_vy(v_y), m_share(hn::Set(Floats(), 1.0f / static_cast<float>(taps))) {
-        m_before_x = m_behind_x = m_before_y = m_behind_y = hn::Zero(Floats());
-        m_corner[0] = m_corner[1] = m_corner[2] = m_corner[3] = m_before_x;
+    using V = hn::Vec<Floats>;
+
+    /// Those of the first tap. share: what each tap has of the pixel.
+    HWY_INLINE TapSums(V v_x, V v_y, V share, V x, V y) : m_vx(v_x), m_vy(v_y), m_share(share) {
+        const Parts p = PartsOf(x, y);
+        m_corner[0] = hn::Mul(p.above, p.left);
+        m_corner[1] = hn::Mul(p.above, p.right);
+        m_corner[2] = hn::Mul(p.below, p.left);
+        m_corner[3] = hn::Mul(p.below, p.right);
+        m_before_x = hn::Mul(p.left, m_share);
+        m_behind_x = hn::Mul(p.right, m_share);
+        m_before_y = p.above;
+        m_behind_y = p.below;
     }
-    HWY_INLINE void Add(hn::Vec<Floats> x, hn::Vec<Floats> y) {
-        const auto zero = hn::Zero(Floats());
-        const auto s = hn::Add(m_vx, x), t = hn::Add(m_vy, y);
-        const auto right = hn::Max(s, zero), left = hn::Sub(right, s);
-        const auto down = hn::Max(t, zero);
-        const auto below = hn::Mul(down, m_share), above = hn::Mul(hn::Sub(down, t), m_share);
-        m_corner[0] = Fused(above, left, m_corner[0]);
-        m_corner[1] = Fused(above, right, m_corner[1]);
-        m_corner[2] = Fused(below, left, m_corner[2]);
-        m_corner[3] = Fused(below, right, m_corner[3]);
-        m_before_x = Fused(left, m_share, m_before_x);
-        m_behind_x = Fused(right, m_share, m_behind_x);
-        m_before_y = hn::Add(above, m_before_y);
-        m_behind_y = hn::Add(below, m_behind_y);
+    HWY_INLINE void Add(V x, V y) {
+        const Parts p = PartsOf(x, y);
+        m_corner[0] = Fused(p.above, p.left, m_corner[0]);
+        m_corner[1] = Fused(p.above, p.right, m_corner[1]);
+        m_corner[2] = Fused(p.below, p.left, m_corner[2]);
+        m_corner[3] = Fused(p.below, p.right, m_corner[3]);
+        m_before_x = Fused(p.left, m_share, m_before_x);
+        m_behind_x = Fused(p.right, m_share, m_behind_x);
+        m_before_y = hn::Add(p.above, m_before_y);
+        m_behind_y = hn::Add(p.below, m_behind_y);
     }
     HWY_INLINE EightWeights Weights() const {
         const auto& c = m_corner;
@@ -75,37 +80,60 @@ class TapSums {
     }
 
   private:
-    hn::Vec<Floats> m_vx, m_vy, m_share;
-    hn::Vec<Floats> m_before_x, m_behind_x, m_before_y, m_behind_y, m_corner[4];
+    /// What a tap gives along x, and its share of what it gives along y.
+    struct Parts {
+        V left, right, above, below;
+    };
+    HWY_INLINE Parts PartsOf(V x, V y) const {
+        const auto zero = hn::Zero(Floats());
+        const auto s = hn::Add(m_vx, x), t = hn::Add(m_vy, y);
+        const auto right = hn::Max(s, zero), down = hn::Max(t, zero);
+        return {hn::Sub(right, s), right, hn::Mul(hn::Sub(down, t), m_share), hn::Mul(down, m_share)};
+    }
+
+    V m_vx, m_vy, m_share;
+    V m_before_x, m_behind_x, m_before_y, m_behind_y, m_corner[4];
 };
 
-/// Taps that all pixels share, or that each has for itself.
+/// Two or four taps that all pixels share, or four that each has for itself.
 class TapsOfRow {
   public:
     HWY_INLINE TapsOfRow(const Texels& s, const Offsets& at)
-        : m_taps(s.taps), m_count(s.tap_count), m_own(at.own) {}
+        : m_count(s.tap_count),
+          m_share(hn::Set(Floats(), 1.0f / static_cast<float>(at.own.x_i ? 4 : s.tap_count))),
+          m_own(at.own) {
+        for (int k = 0; k < 4; ++k) {
+            const Tap tap = m_own.x_i || k >= m_count ? Tap{} : s.taps[k];
+            m_x[k] = hn::Set(Floats(), tap.x);
+            m_y[k] = hn::Set(Floats(), tap.y);
+        }
+    }
 
     /// The weights of the pixels from i on, v from the middles of their texels.
     HWY_INLINE EightWeights Weights(hn::Vec<Floats> v_x, hn::Vec<Floats> v_y, int i) const {
         const Floats d;
-        TapSums sums(v_x, v_y, m_own.x_i ? 4 : m_count);
         if (m_own.x_i) {
             const auto ax = hn::LoadU(d, m_own.x_i + i), ay = hn::LoadU(d, m_own.y_i + i);
             const auto bx = hn::LoadU(d, m_own.x_j + i), by = hn::LoadU(d, m_own.y_j + i);
             const auto px = hn::Add(ax, bx), py = hn::Add(ay, by), qx = hn::Sub(ax, bx), qy = hn::Sub(ay, by);
-            sums.Add(hn::Neg(px), hn::Neg(py));
+            TapSums sums(v_x, v_y, m_share, hn::Neg(px), hn::Neg(py));
             sums.Add(qx, qy);
             sums.Add(hn::Neg(qx), hn::Neg(qy));
             sums.Add(px, py);
-        } else {
-            for (int k = 0; k < m_count; ++k) sums.Add(hn::Set(d, m_taps[k].x), hn::Set(d, m_taps[k].y));
+            return sums.Weights();
+        }
+        TapSums sums(v_x, v_y, m_share, m_x[0], m_y[0]);
+        sums.Add(m_x[1], m_y[1]);
+        if (m_count == 4) {
+            sums.Add(m_x[2], m_y[2]);
+            sums.Add(m_x[3], m_y[3]);
         }
         return sums.Weights();
     }
 
   private:
-    const Tap* m_taps;
     int m_count;
+    hn::Vec<Floats> m_share, m_x[4], m_y[4];
     OwnTaps m_own;
 };
 

@@ -53,28 +53,31 @@ struct NineWeightedRow {
     HWY_ALIGN int32_t pair[5][kRowRoom];
 };
 
-/// Weights of nine texels in whole numbers. None is negative, and but for that they add up to 1.
+/// Weights of nine texels in whole numbers. None is negative, and but for that they add up to 1. Above the last weight there is anything.
 HWY_INLINE void WeighNine(const TapsOfRow& taps, const Positions<kRowRoom>& p, int count,
                           NineWeightedRow& to) {
     const Floats d;
     const Ints di;
-    const auto half = hn::Set(d, 0.5f), one = hn::Set(d, static_cast<float>(1 << kWeightBits));
-    // They are at most 1, so that no conversion has to look for what integers cannot hold.
-    const auto whole = [&](hn::Vec<Floats> w) HWY_ATTR { return ToInts(hn::Mul(w, one)); };
+    constexpr float kOne = 1 << kWeightBits;
+    const auto half = hn::Set(d, 0.5f), one = hn::Set(d, kOne), unit = hn::Set(d, kUnit), zero = hn::Zero(d);
+    const auto eight_units = hn::ShiftLeft<3>(hn::BitCast(di, unit));
+    // In bits that count from kUnit's, of which the lower half is 0: weights are at most 1, and the lower half of theirs is the number.
+    const auto bits = [&](hn::Vec<Floats> w) HWY_ATTR { return hn::BitCast(di, hn::MulAdd(w, one, unit)); };
+    const auto low_half = hn::Set(di, 0xffff);
     const auto two = [&](hn::Vec<Ints> low, hn::Vec<Ints> high)
-                         HWY_ATTR { return hn::Or(low, hn::ShiftLeft<16>(high)); };
+                         HWY_ATTR { return hn::Or(hn::And(low, low_half), hn::ShiftLeft<16>(high)); };
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
         const EightWeights w =
             taps.Weights(hn::Sub(hn::Load(d, p.fx + i), half), hn::Sub(hn::Load(d, p.fy + i), half), i);
-        const auto zero = hn::Zero(d);
         // Sums of four may have lost so much that they are below 0.
-        const auto above_left = whole(w.above_left), above = whole(hn::Max(w.above, zero)),
-                   above_right = whole(w.above_right), left = whole(hn::Max(w.left, zero)),
-                   right = whole(hn::Max(w.right, zero)), below_left = whole(w.below_left),
-                   below = whole(hn::Max(w.below, zero)), below_right = whole(w.below_right);
+        const auto above_left = bits(w.above_left), above = bits(hn::Max(w.above, zero)),
+                   above_right = bits(w.above_right), left = bits(hn::Max(w.left, zero)),
+                   right = bits(hn::Max(w.right, zero)), below_left = bits(w.below_left),
+                   below = bits(hn::Max(w.below, zero)), below_right = bits(w.below_right);
         const auto around = hn::Add(hn::Add(hn::Add(above_left, above), hn::Add(above_right, left)),
                                     hn::Add(hn::Add(right, below_left), hn::Add(below, below_right)));
-        const auto middle = hn::Max(hn::Sub(hn::Set(di, 1 << kWeightBits), around), hn::Zero(di));
+        const auto middle =
+            hn::Max(hn::Sub(hn::Add(eight_units, hn::Set(di, 1 << kWeightBits)), around), hn::Zero(di));
         hn::Store(two(above_left, above), di, to.pair[0] + i);
         hn::Store(two(left, middle), di, to.pair[1] + i);
         hn::Store(two(below_left, below), di, to.pair[2] + i);
@@ -265,15 +268,14 @@ HWY_INLINE void SampleGroup(const uint8_t* origin, const uint8_t* next_row, cons
                           WeightedSum<kChannels, 3>(origin, next_row, offset, above, below), out);
 }
 
-/// From three texels of two rows of bytes, the right one's channel of either row side by side, as 16 bits.
-template <int kChannels>
-HWY_INLINE hn::Vec<Words> RightOnes(hn::Vec<Bytes> upper, hn::Vec<Bytes> lower) {
+/// From three texels of bytes, the right one's channels as the lower ones of two times 16 bits each, or as the upper ones.
+template <int kChannels, bool kUpper>
+HWY_INLINE hn::Vec<Words> RightOne(hn::Vec<Bytes> texels) {
     constexpr uint8_t k = 2 * kChannels, no = 0x80;
-    HWY_ALIGN static constexpr uint8_t kEven[16] = {k,     no, no, no, k + 1, no, no, no,
-                                                    k + 2, no, no, no, k + 3, no, no, no};
-    HWY_ALIGN static constexpr uint8_t kOdd[16] = {no, no, k,     no, no, no, k + 1, no,
-                                                   no, no, k + 2, no, no, no, k + 3, no};
-    return hn::BitCast(Words(), hn::Or(Reordered(upper, kEven), Reordered(lower, kOdd)));
+    HWY_ALIGN static constexpr uint8_t kPlaces[2][16] = {
+        {k, no, no, no, k + 1, no, no, no, k + 2, no, no, no, k + 3, no, no, no},
+        {no, no, k, no, no, no, k + 1, no, no, no, k + 2, no, no, no, k + 3, no}};
+    return hn::BitCast(Words(), Reordered(texels, kPlaces[kUpper]));
 }
 
 /// Pixels k and k + 4 of a group, from nine texels each, in units of 2^-kWeightBits.
@@ -289,9 +291,10 @@ HWY_INLINE hn::Vec<Sums> NineSum(const uint8_t* origin, ptrdiff_t row, const int
     };
     const auto left = hn::Add(AddPairs(Neighbours<kChannels>(upper), weights(0)),
                               AddPairs(Neighbours<kChannels>(middle), weights(1)));
-    const auto right = hn::Add(AddPairs(Neighbours<kChannels>(lower), weights(2)),
-                               AddPairs(RightOnes<kChannels>(upper, middle), weights(3)));
-    const auto last = AddPairs(RightOnes<kChannels>(lower, hn::Zero(Bytes())), weights(4));
+    const auto right = hn::Add(
+        AddPairs(Neighbours<kChannels>(lower), weights(2)),
+        AddPairs(hn::Or(RightOne<kChannels, false>(upper), RightOne<kChannels, true>(middle)), weights(3)));
+    const auto last = AddPairs(RightOne<kChannels, false>(lower), weights(4));
     return hn::Add(hn::Add(left, right), last);
 }
 
