@@ -91,6 +91,7 @@ HWY_INLINE V AddRounded(V sum, V a, V b) {
 template <bool kInDouble>
 class WholeSum {
   public:
+    HWY_INLINE WholeSum() {}  // the compiler's own is not of the instruction set
     HWY_INLINE void clear() {
         if constexpr (kInDouble)
             m_sum = hn::Set(D(), kRounder);
