@@ -199,5 +199,29 @@ TEST(DeformSums, WhatStaysInDouble) {
     EXPECT_TRUE(sum.stays_in_double(few));
 }
 
+/// Totals do not tell how large sums are where something is taken away before it is added.
+TEST(DeformSums, TakenAwayBeforeItIsAdded) {
+    Deformation d;
+    d.kernel = DeformationKernel::wendland_c2;
+    d.vector = {0x1p48, 0, 0};
+    const DeformOptions options{.resolution = 1};
+    on_every_instruction_set([&] {
+        const std::vector<double> origin{0};
+        DeformedGrid grid(origin, origin, options);
+        DeformedPoints points(std::vector<glm::dvec2>{{0, 0}}, options);
+        const auto check = [&](const DeformationChange& change, int times) {
+            double moved[3], scattered[3];
+            grid.apply(change);
+            grid.update<double>(nullptr, moved);
+            points.apply(change);
+            points.write<double>(nullptr, scattered);
+            EXPECT_EQ(moved[0], -times * 0x1p48);
+            EXPECT_EQ(scattered[0], -times * 0x1p48);
+        };
+        for (int n = 1; n <= 24; ++n) check({d, std::nullopt}, n);
+        for (int n = 23; n >= 0; --n) check({std::nullopt, d}, n);
+    });
+}
+
 }  // namespace
 }  // namespace anamorph::test_deform_sums

@@ -7,10 +7,10 @@
 // the bit, and order does not matter. Each component of V / resolution is less than kMostUnits, and so is
 // what is added at once. Contributions err by half a unit, and relatively by kKernelError 2^-53.
 //
-// What is rounded is the exact product of a weight w, V / resolution and perhaps a factor of F, and of a share f <= 1, the rest of F, of
+// What is rounded is the exact product of a weight w, V / resolution and perhaps a factor of F, and of a share f < 2, the rest of F, of
 // which the last bit is 1 where it is not 0. The product never lies in the middle of two whole numbers: as w < 2^50 is a multiple of
 // some power of two up to 2^49 and of no greater one, and f of one up to 2^-52, w f is a multiple of 2^-3 at most, and not of
-// twice that. So where a sum of whole numbers is below kMostInDouble, it does not matter whether a product is rounded before it is added to
+// twice that. So where a sum of whole numbers is below twice kMostInDouble, it does not matter whether a product is rounded before it is added to
 // the sum or as the sum with it is, once: a sum that stands next to 3 * 2^51, where doubles are the whole numbers, takes one fused
 // multiplication and addition.
 #pragma once
@@ -22,7 +22,7 @@ namespace anamorph::simd {
 
 /// The largest magnitude that is rounded by adding 1.5 * 2^52.
 inline constexpr double kMostUnits = 0x1p50;
-/// Sums up to this magnitude, and one term more, are whole numbers where doubles next to 1.5 * 2^52 are.
+/// Sums up to twice this magnitude are whole numbers where doubles next to 1.5 * 2^52 are: what was there, and what is added.
 inline constexpr double kMostInDouble = 0x1p50;
 /// The error of a kernel's value, in units of 2^-53: the distance over the extent errs by 2.5, times the
 /// kernel's greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; exponential functions err by 4, the
@@ -82,10 +82,11 @@ struct GridBand {
     double resolution;
     const double* offset;  ///< laid out as base is
     const T* base;
-    T* out;          ///< null: sums only
-    bool all;        ///< write blocks too that no term reaches
-    bool stream;     ///< write past the caches: for surfaces larger than these
-    bool in_double;  ///< are all sums up to kMostInDouble, before, on the way and after?
+    T* out;       ///< null: sums only
+    bool all;     ///< write blocks too that no term reaches
+    bool stream;  ///< write past the caches: for surfaces larger than these
+    bool
+        in_double;  ///< is what is added up to kMostInDouble in all? Sums that are beyond it before are looked for.
 };
 void deform_band(const GridBand<float>& band);
 void deform_band(const GridBand<double>& band);

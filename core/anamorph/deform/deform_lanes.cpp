@@ -73,6 +73,16 @@ HWY_NOINLINE V OnTheSideOfRest(V sum, V off, V a, V b, V product) {
 }
 #endif
 
+/// Are sums from -kMostInDouble up to below kMostInDouble? count: a multiple of kLanes.
+bool AreInDouble(const std::int64_t* sums, std::size_t count) {
+    const DI di;
+    constexpr auto kMost = static_cast<std::int64_t>(kMostInDouble);
+    VI bits = hn::Zero(di);
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes))
+        bits = hn::Or(bits, hn::Add(hn::LoadU(di, sums + i), hn::Set(di, kMost)));
+    return hn::AllTrue(di, hn::Eq(hn::And(bits, hn::Set(di, ~(2 * kMost - 1))), hn::Zero(di)));
+}
+
 /// sum + a b, rounded once to a whole number: `sum` is a whole number and kRounder, a a weight and b a share.
 HWY_INLINE V AddRounded(V sum, V a, V b) {
 #if HWY_NATIVE_FMA
@@ -403,8 +413,35 @@ class TermsOfBlocks {
     std::vector<const PairTerm*> m_terms;
 };
 
+/// A block of columns of a pair of rows, and the terms that reach it.
+struct BlockTerms {
+    int row, column;
+    std::span<const PairTerm*const> gaussians, others;
+
+    bool empty() const { return gaussians.empty() && others.empty(); }
+};
+
+/// Adds terms to the sums of a block, and writes its points. fresh: the sums begin at 0.
 template <bool kInDouble, class T>
-void DrawBand(const GridBand<T>& band) {
+void DrawBlock(const GridBand<T>& band, const BlockTerms& terms, bool fresh, std::int64_t* sums) {
+    if (fresh && terms.empty()) std::memset(sums, 0, kBlockSums * sizeof(*sums));
+    if (!terms.gaussians.empty()) AddToBlock<kInDouble, true>(terms.gaussians, terms.column, fresh, sums);
+    if (!terms.others.empty())
+        AddToBlock<kInDouble, false>(terms.others, terms.column, fresh && terms.gaussians.empty(), sums);
+    if (!band.out) return;
+    const int count = std::min(kGridBlock, band.columns - terms.column);
+    for (int r = 0; r < kGridRows && terms.row + r < band.row_end; ++r) {
+        const std::ptrdiff_t at = 3 * (std::ptrdiff_t{terms.row + r} * band.columns + terms.column);
+        T* const out = band.out + at;
+        const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
+        WritePoints<kInDouble>(sums + 3 * r * kGridBlock, count, band.resolution, stream,
+                               band.offset ? band.offset + at : nullptr, band.base ? band.base + at : nullptr,
+                               out);
+    }
+}
+
+template <class T>
+void DeformBand(const GridBand<T>& band) {
     HWY_ALIGN std::int64_t room[kBlockSums];
     std::vector<PairTerm> on_rows(band.count);
     std::vector<const PairTerm*> now[2], sorted[2];  // Gaussians and others
@@ -421,33 +458,19 @@ void DrawBand(const GridBand<T>& band) {
         if (now[0] != sorted[0]) gaussians.sort(sorted[0] = now[0]);
         if (now[1] != sorted[1]) others.sort(sorted[1] = now[1]);
         for (int column = 0; column < band.columns; column += kGridBlock) {
-            const std::span<const PairTerm*const> first = gaussians.of(column), then = others.of(column);
-            const bool moved = !first.empty() || !then.empty();
-            if (!moved && !band.all) continue;
-            std::int64_t* const sums =
-                band.sums ? band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column}
-                          : room;
-            const bool fresh = !band.sums;
-            if (fresh && !moved) std::memset(room, 0, sizeof(room));
-            if (!first.empty()) AddToBlock<kInDouble, true>(first, column, fresh, sums);
-            if (!then.empty()) AddToBlock<kInDouble, false>(then, column, fresh && first.empty(), sums);
-            if (!band.out) continue;
-            const int count = std::min(kGridBlock, band.columns - column);
-            for (int r = 0; r < kGridRows && row + r < band.row_end; ++r) {
-                const std::ptrdiff_t at = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
-                T* const out = band.out + at;
-                const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
-                WritePoints<kInDouble>(sums + 3 * r * kGridBlock, count, band.resolution, stream,
-                                       band.offset ? band.offset + at : nullptr,
-                                       band.base ? band.base + at : nullptr, out);
+            const BlockTerms terms{row, column, gaussians.of(column), others.of(column)};
+            if (terms.empty() && !band.all) continue;
+            if (!band.sums) {
+                (band.in_double ? DrawBlock<true, T> : DrawBlock<false, T>)(band, terms, true, room);
+                continue;
             }
+            std::int64_t* const sums =
+                band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column};
+            const bool in_double = band.in_double && AreInDouble(sums, kBlockSums);
+            (in_double ? DrawBlock<true, T> : DrawBlock<false, T>)(band, terms, false, sums);
         }
     }
     if (band.stream) hwy::FlushStream();
-}
-template <class T>
-void DeformBand(const GridBand<T>& band) {
-    band.in_double ? DrawBand<true>(band) : DrawBand<false>(band);
 }
 void DeformBandFloat(const GridBand<float>& band) {
     DeformBand(band);
@@ -635,6 +658,11 @@ HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_coun
             for (int c = 0; c < kSlopeCount; ++c) slope[c].store(slopes[c] + i);
     }
 }
+bool AreInDouble(const std::int64_t* const (&sums)[3], std::size_t count) {
+    for (const std::int64_t* const of : sums)
+        if (!AreInDouble(of, count)) return false;
+    return true;
+}
 template <bool kSums, bool kSlopes, bool kInDouble>
 void AddTerms(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
               std::size_t count, std::int64_t* const* sums, double* const* slopes) {
@@ -645,8 +673,9 @@ void AddTerms(const PointTerm* const* terms, std::size_t term_count, const TermP
 }
 void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                   std::size_t count, std::int64_t* const* sums, bool in_double) {
-    (in_double ? AddTerms<true, false, true> : AddTerms<true, false, false>)(terms, term_count, points, count,
-                                                                             sums, nullptr);
+    const bool holds = in_double && AreInDouble({sums[0], sums[1], sums[2]}, count);
+    (holds ? AddTerms<true, false, true> : AddTerms<true, false, false>)(terms, term_count, points, count,
+                                                                         sums, nullptr);
 }
 void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                     std::size_t count, double* const* slopes) {
@@ -655,8 +684,9 @@ void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const
 void DeformPointsWithSlopes(const PointTerm* const* terms, std::size_t term_count, const TermPoints& points,
                             std::size_t count, std::int64_t* const* sums, double* const* slopes,
                             bool in_double) {
-    (in_double ? AddTerms<true, true, true> : AddTerms<true, true, false>)(terms, term_count, points, count,
-                                                                           sums, slopes);
+    const bool holds = in_double && AreInDouble({sums[0], sums[1], sums[2]}, count);
+    (holds ? AddTerms<true, true, true> : AddTerms<true, true, false>)(terms, term_count, points, count, sums,
+                                                                       slopes);
 }
 
 /// The vector of length 1 in the same direction; 0 where the length is 0 or not finite.

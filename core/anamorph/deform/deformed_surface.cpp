@@ -259,8 +259,9 @@ double DisplacementSum::error_bound() const {
 
 bool DisplacementSum::stays_in_double(std::span<const DeformationChange> changes) const {
     // Before the changes sums were at most what they are after them and all that is changed; on the way they are at most all
-    // that is changed more. Twice is for what is rounded here and in the kernels.
-    double most_on_the_way = most();
+    // that is changed more. Twice is for what is rounded here and in the kernels. Totals are negative where something was taken
+    // away before it was added.
+    double most_on_the_way = std::max(0.0, most());
     for (const Term& term : terms_of(changes)) {
         const glm::dvec3& v = term.deformation->vector;
         most_on_the_way +=
