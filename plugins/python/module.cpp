@@ -180,7 +180,11 @@ py::dict dict_of(const Attributes& attributes) {
     return dict;
 }
 
-const Operation& operation_of(const std::string& name) {
+const Operation& operation_of(const py::object& given) {
+    if (!py::isinstance<py::str>(given))
+        throw py::type_error("operation=" + py::repr(given).cast<std::string>() + ": must be a str, one of " +
+                             operation_names());
+    const std::string name = bytes_of(given, "operation");
     if (const Operation* const operation = find_operation(name)) return *operation;
     throw Error("operation", printable(name), "must be one of " + operation_names());
 }
@@ -196,10 +200,10 @@ int threads_of(const py::object& given) {
 class ModulePicture {
   public:
     /// As the module's class Picture is made: by the arguments of a caller.
-    ModulePicture(const std::string& name, const py::tuple& sources, const py::dict& keywords,
+    ModulePicture(const py::object& given, const py::tuple& sources, const py::dict& keywords,
                   const py::object& subimage, const py::object& threads)
         : m_threads(threads_of(threads)) {
-        const Operation& operation = operation_of(name);
+        const Operation& operation = operation_of(given);
         const CallValues values = values_of(operation, keywords);
         std::vector<ArrayPicture::Input> inputs;
         for (const py::handle& source : sources) {
@@ -321,7 +325,7 @@ class ModulePicture {
 };
 
 /// Opens a picture and draws it, as a call of an operation does: in one step, since each takes microseconds from Python.
-Pixels apply(const std::string& operation, const py::tuple& sources, const py::dict& keywords,
+Pixels apply(const py::object& operation, const py::tuple& sources, const py::dict& keywords,
              const py::object& subimage, const py::object& threads, const py::object& roi,
              const py::object& progress) {
     return ModulePicture(operation, sources, keywords, subimage, threads).draw(roi, progress);
@@ -411,7 +415,9 @@ PYBIND11_MODULE(_core, m) {
     m.def("is_plain", &is_plain);
     m.def(
         "encoded",
-        [](const py::str& text, const std::string& name) { return py::bytes(bytes_of(text, name)); },
+        [](const py::str& text, const py::str& name) {
+            return py::bytes(bytes_of(text, bytes_of(name, "a name")));
+        },
         py::arg("text"), py::arg("name") = "a key");
     m.def("integer", &integer);
     m.def("integers", &integers);
@@ -429,7 +435,7 @@ PYBIND11_MODULE(_core, m) {
     });
 
     py::class_<ModulePicture>(m, "Picture")
-        .def(py::init<const std::string&, const py::tuple&, const py::dict&, const py::object&,
+        .def(py::init<const py::object&, const py::tuple&, const py::dict&, const py::object&,
                       const py::object&>())
         .def_property_readonly("arrays", &ModulePicture::arrays)
         .def_property_readonly("subimages", &ModulePicture::subimages)

@@ -97,8 +97,12 @@ std::string text_of(const Parameter* row, const std::string& key, const py::hand
     const bool is_list = py::isinstance<py::list>(value);
     const bool has_numbers = is_list || py::isinstance<py::tuple>(value) || py::isinstance<py::array>(value);
     if (py::isinstance<py::str>(value)) return bytes_of(py::reinterpret_borrow<py::str>(value), key);
-    if (!has_numbers && !is_number(value) && py::hasattr(value, "__fspath__"))
-        return bytes_of(in_python("os", "fspath")(value).cast<py::str>(), key);
+    if (!has_numbers && !is_number(value) && py::hasattr(value, "__fspath__")) {
+        const py::object path = in_python("os", "fspath")(value);
+        if (!py::isinstance<py::str>(path))
+            throw py::type_error(key + " is a path of bytes: must be one of str");
+        return bytes_of(path, key);
+    }
     if ((is_image || is_file) && (is_list || py::isinstance<py::dict>(value))) {
         std::string name = "<" + key + ">.json";
         to.texts[name] = in_python("anamorph._checks", "json_of")(key, value).cast<std::string>();

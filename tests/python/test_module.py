@@ -543,10 +543,19 @@ class BadInput(unittest.TestCase):
         for keys in (dict(threads=1.5), dict(subimage="0"), dict(threads=[])):
             with self.subTest(keys), self.assertRaisesRegex(TypeError, "must be an integer"):
                 anamorph.pano(noise(32, 64), **keys)
-        with self.assertRaises(TypeError):
-            anamorph.apply(3, noise(32, 64))
+        for operation in (3, None, b"pano"):
+            for call in (anamorph.apply, anamorph.Picture):
+                with self.subTest(operation), self.assertRaisesRegex(TypeError, f"^operation={operation!r}: must be a str, one of "):
+                    call(operation, noise(32, 64))
+        with self.assertRaisesRegex(anamorph.Error, "^operation=.*: must be one of "):
+            anamorph.apply("\udcff", noise(32, 64))
         with self.assertRaises(UnicodeEncodeError):
             anamorph.pano(noise(32, 64), to="\ud800")
+        path = type("Path", (), {"__fspath__": lambda self: b"/x.json"})()
+        with self.assertRaisesRegex(TypeError, "mesh is a path of bytes"):
+            anamorph.warp(noise(32, 64), mesh=path)
+        named = anamorph.Image(noise(32, 64), metadata={"\udcff": "x"})
+        self.assertEqual(anamorph.pano(named, size=4).shape, (4, 4, 3))
         with self.assertRaisesRegex(ValueError, "at least 0"):
             anamorph.pano(noise(32, 64), threads=-1)
         self.assertEqual(picture.draw().shape, (10, 20, 3))
