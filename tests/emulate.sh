@@ -76,7 +76,7 @@ rm -f "$folder"/{printed,screen}.txt
 # It ends with an error whenever the machine turns itself off, and draws that one's screen on a terminal of its own, which has to be read.
 TERM=xterm bochs -f "$folder/bochsrc" -rc "$folder/commands" >"$folder/screen.txt" 2>&1 </dev/null &
 emulator=$!
-trap 'kill $emulator 2>/dev/null' EXIT
+trap 'kill $emulator 2>/dev/null || true' EXIT
 screen=""
 while [ -z "$screen" ] && kill -0 $emulator 2>/dev/null; do
     sleep 1
