@@ -57,7 +57,7 @@ build() {
     NINJA_STATUS="[%f/%t] " cmake --build --preset release --target "${targets[@]}"
 }
 
-echo "building into build/release (the first time this takes about 6 minutes on 2 cores)"
+echo "building into build/release (the first time this takes about 5 minutes on 2 cores)"
 build 2>&1 | tee "$demo/build.txt" | show_progress || { cat "$demo/build.txt" >&2; exit 1; }
 export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio" PATH="$PWD/build/release/core/command:$PWD/build/release/examples/cpp:$PATH"
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "anamorph/number/quarter_turns.h"
+
 namespace anamorph {
 namespace {
 
@@ -172,21 +174,8 @@ void sin_cos(const DoubleDouble& a, DoubleDouble& s, DoubleDouble& c) {
     DoubleDouble rest = a;
     for (const double part : {kHalfTurn.upper(), kHalfTurn.lower(), kRestOfHalfTurn[0], kRestOfHalfTurn[1]})
         rest -= exact_product(halves, part);
-    DoubleDouble sine, cosine;
-    small_sin_cos(rest, sine, cosine);
-    switch (static_cast<long long>(quarters) & 3) {
-        case 0:
-            s = sine, c = cosine;
-            break;
-        case 1:
-            s = cosine, c = -sine;
-            break;
-        case 2:
-            s = -sine, c = -cosine;
-            break;
-        default:
-            s = -cosine, c = sine;
-    }
+    small_sin_cos(rest, s, c);
+    turn_by_quarters(static_cast<long long>(quarters), s, c);
 }
 
 DoubleDouble tan(const DoubleDouble& a) {

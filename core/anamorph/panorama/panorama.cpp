@@ -2,6 +2,7 @@
 #include "anamorph/panorama/panorama.h"
 
 #include "anamorph/error.h"
+#include "anamorph/number/quarter_turns.h"
 
 namespace anamorph {
 namespace {
@@ -15,21 +16,8 @@ struct Angle {
 
     explicit Angle(double degrees) {
         const double angle = std::fmod(degrees, 360.0), quarters = std::round(angle / 90);
-        DoubleDouble s, c;
-        sin_cos(DoubleDouble(angle - 90 * quarters) * DoubleDouble::pi() / 180, s, c);
-        switch (static_cast<int>(quarters) & 3) {
-            case 0:
-                sin = s, cos = c;
-                break;
-            case 1:
-                sin = c, cos = -s;
-                break;
-            case 2:
-                sin = -s, cos = -c;
-                break;
-            default:
-                sin = -c, cos = s;
-        }
+        sin_cos(DoubleDouble(angle - 90 * quarters) * DoubleDouble::pi() / 180, sin, cos);
+        turn_by_quarters(static_cast<long long>(quarters), sin, cos);
     }
 };
 
