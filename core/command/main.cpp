@@ -330,7 +330,8 @@ class Command {
             for (std::size_t at; (at = what.find(row_name)) != std::string::npos;)
                 what.replace(at, row_name.size(), option_of(row_name));
             const bool is_number = row.type == ParameterType::number || row.type == ParameterType::whole;
-            std::string takes = is_number ? "NUMBER" : row.type == ParameterType::file ? "FILE" : "TEXT";
+            const bool is_file = row.type == ParameterType::file || row.type == ParameterType::image;
+            std::string takes = is_number ? "NUMBER" : is_file ? "FILE" : "TEXT";
             if (row.type == ParameterType::choice) takes = row.accepted();
             if (!row.default_value.empty()) takes += " [" + row.default_value + "]";
             if (is_number) what += (row.unit.empty() ? "" : ", in " + row.unit) + ": " + row.accepted();

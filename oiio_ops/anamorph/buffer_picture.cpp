@@ -65,11 +65,17 @@ struct Drawn {
 };
 
 /// Adds the images among linked files; the keys of those that cannot be opened, which are null.
-std::vector<std::string> open_linked(const LinkedFiles& linked, std::vector<std::unique_ptr<Source>>& images,
+std::vector<std::string> open_linked(const LinkedFiles& linked, const MemoryFiles& in_memory,
+                                     std::vector<std::unique_ptr<Source>>& images,
                                      std::vector<ImageSpec>& specs) {
     std::vector<std::string> missing;
     for (const LinkedFile& file : linked) {
         if (!file.image) continue;
+        if (const auto found = in_memory.images.find(file.name); found != in_memory.images.end()) {
+            images.push_back(source_of(*found->second));
+            specs.push_back(found->second->spec());
+            continue;
+        }
         images.emplace_back();
         specs.emplace_back();
         try {
@@ -163,11 +169,12 @@ PictureRequest picture_of(const Pictures& pictures, int subimage) {
 
 BufferPicture::BufferPicture(const Operation& operation, const ParameterValues& values,
                              const std::vector<SourceInput>& sources, const ParallelFor& parallel_for,
-                             const SideFileReader& reader, int subimage)
+                             const MemoryFiles& in_memory, int subimage)
     : m_values(values), m_sources(sources), m_chain(operation.name) {
     check_keys(operation, values, std::any_of(sources.begin(), sources.end(), [](const SourceInput& source) {
                    return source.picture != nullptr;
                }));
+    const MemoryFileReader reader(in_memory);
     const NamedFiles named = files_of(operation, values, reader);
     const std::string gathering = operation.gathering_file(named.files);
     if (!gathering.empty() && !sources.empty())
@@ -178,7 +185,8 @@ BufferPicture::BufferPicture(const Operation& operation, const ParameterValues& 
     for (const SourceInput& source : sources) open.add(source);
     m_said = find_lenses(operation, m_values, open.shown, open.known);
     const std::vector<std::string> missing =
-        gathering.empty() ? open_linked(named.linked, open.images, open.specs) : std::vector<std::string>();
+        gathering.empty() ? open_linked(named.linked, in_memory, open.images, open.specs)
+                          : std::vector<std::string>();
     m_pictures =
         operation.read({m_values, open.known, named.files, KeyedFileReader(named.files, reader), missing});
     m_request = picture_of(*m_pictures, subimage);

@@ -26,11 +26,11 @@ class BufferPicture {
         std::shared_ptr<const BufferPicture> picture = {};
     };
 
-    /// Opens a picture. `values` name side files, which `reader` opens. `subimage`: of an operation that makes several pictures.
-    /// `parallel_for`: for a source that is drawn first. Throws Error.
+    /// Opens a picture. `values` name side files, some of which may be in memory: their images must outlive the picture. `subimage`: of
+    /// an operation that makes several pictures. `parallel_for`: for a source that is drawn first. Throws Error.
     BufferPicture(const Operation& operation, const ParameterValues& values,
                   const std::vector<SourceInput>& sources, const ParallelFor& parallel_for,
-                  const SideFileReader& reader = side_file_reader(), int subimage = 0);
+                  const MemoryFiles& in_memory = {}, int subimage = 0);
 
     /// The windows, channels, type and metadata of the whole picture, and what it says beforehand.
     const OIIO::ImageSpec& spec() const { return m_spec; }

@@ -72,8 +72,8 @@ ArrayPicture::ArrayPicture(const Operation& operation, const std::vector<Assignm
                           source.picture ? source.picture->m_picture : nullptr});
     MemoryFiles in_memory{files.texts, {}};
     for (const auto& [name, image] : files.images) in_memory.images[name] = &image->image();
-    m_picture = std::make_shared<const BufferPicture>(operation, values, inputs, parallel_for,
-                                                      MemoryFileReader(in_memory), subimage);
+    m_picture =
+        std::make_shared<const BufferPicture>(operation, values, inputs, parallel_for, in_memory, subimage);
 }
 
 void ArrayPicture::draw(const ArrayPixels& to, int x, int y, const ParallelFor& parallel_for,

@@ -204,6 +204,24 @@ class Recipes(unittest.TestCase):
         script = [name for name in pathlib.Path(os.environ["ANAMORPH_SOURCE_DIR"], "examples/figures").iterdir() if name.suffix == ".nudes"][0]
         self.assertEqual(anamorph.figure(script=script, frame=0, size=(40, 30)).shape, (30, 40, 4))
 
+    def test_pictures_that_are_no_sources(self):
+        picture, other = noise(48, 64), noise(20, 30, seed=2)
+        write("front.tif", picture)
+        write("other.tif", other)
+        around = "surface=cylinder&angle=200&rotate=0,100,0&size=50x40"
+        with_back = f"front.tif.drape?{around}&back=other.tif"
+        self.assertGreater(np.abs(recipe(with_back) - recipe(f"front.tif.drape?{around}")).max(), 0.1)
+        for back in (other, "other.tif", anamorph.Image(other), oiio.ImageBuf("other.tif")):
+            self.check(anamorph.drape(picture, surface="cylinder", angle=200, rotate=(0, 100, 0), size=(50, 40), back=back), with_back)
+        with self.assertRaises(anamorph.Error) as caught:
+            anamorph.drape(picture, back=other[..., :2])
+        self.assertEqual(caught.exception.parameter, "back")
+        script = pathlib.Path(os.environ["ANAMORPH_SOURCE_DIR"], "examples/figures/walker.nudes")
+        shaded = f"f.figure?script={script}&frame=0&size=60x50&style=shaded"
+        with_pictures = f"{shaded}&bump=other.tif&backdrop=front.tif"
+        self.assertGreater(np.abs(recipe(with_pictures) - recipe(f"{shaded}&backdrop=front.tif")).max(), 0.01)
+        self.check(anamorph.figure(script=script, frame=0, size=(60, 50), style="shaded", bump=other, backdrop=picture), with_pictures)
+
     def test_keywords_and_values(self):
         panorama = noise(32, 64)
         once = anamorph.pano(panorama, from_="equirectangular", fov=np.float32(70.1), size=np.array([30, 20]), alpha=True)

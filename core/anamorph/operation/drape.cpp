@@ -113,11 +113,11 @@ ParameterTable look_rows() {
         vector("background", "",
                "values of the channels behind the surface and where its picture's alpha lets through; by "
                "default nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
-        file("back",
-             "the picture on the far side of the surface, of any size, stretched over it as src is, with as "
-             "many "
-             "channels as that, of which the same is alpha; seen from there it is the right way round; by "
-             "default src, as it shows through"),
+        image("back",
+              "the picture on the far side of the surface, of any size, stretched over it as src is, with as "
+              "many "
+              "channels as that, of which the same is alpha; seen from there it is the right way round; by "
+              "default src, as it shows through"),
         image("backdrop",
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),

@@ -149,7 +149,7 @@ ParameterTable figure_view_rows() {
         numbers("background", 0,
                 "red,green,blue, 0 to 255; or bands from above, end,red,green,blue each, the end a share of "
                 "the height, 0 to 1; by default the bands of the frame, or transparent"),
-        file("backdrop", "a picture behind the figures, stretched to the size, before the background"),
+        image("backdrop", "a picture behind the figures, stretched to the size, before the background"),
     };
 }
 

@@ -77,10 +77,10 @@ ParameterTable figure_relief_rows() {
         text("green", "the same; own_green by default"),
         text("blue", "the same; own_blue by default"),
         text("let", "definitions before these, as in k=0.3;c=cos(k)"),
-        file("bump",
-             "of styles shaded and textured: a picture of heights around each body, by mapping: the "
-             "brightness, the mean "
-             "of up to three channels, turns normals (Blinn 1978)"),
+        image("bump",
+              "of styles shaded and textured: a picture of heights around each body, by mapping: the "
+              "brightness, the mean "
+              "of up to three channels, turns normals (Blinn 1978)"),
         number("bump_scale", "units", "10", -1e6, 1e6, "how high brightness 1 is"),
     };
 }
