@@ -19,6 +19,7 @@
 #include "anamorph/figure.h"
 #include "anamorph/parallel.h"
 #include "anamorph/parameter/parameter.h"
+#include "lock.h"
 #include "script_source.h"
 
 namespace py = pybind11;
@@ -106,7 +107,7 @@ class Frame {
         options.tol = tol;
         options.crossings = crossings;
         const figure::Drawing drawing = [&] {
-            const py::gil_scoped_release unlock;
+            const Unlocked unlocked;
             return draw(m_frame, view_in(m_frame, {width, height}), {width, height}, options,
                         default_parallel_for());
         }();
@@ -140,7 +141,7 @@ class SharedMotion {
 
     template <class Body>
     auto with(const Body& body) {
-        const py::gil_scoped_release unlock;
+        const Unlocked unlocked;
         const std::lock_guard lock(*m_mutex);
         return body(*m_motion);
     }
@@ -166,7 +167,7 @@ std::pair<py::array_t<double>, double> deform(const std::string& bumps, const Do
     double* to = moved.mutable_data();
     double bound = 0;
     {
-        const py::gil_scoped_release unlock;
+        const Unlocked unlocked;
         const std::vector<Deformation> list = with_images(parse_entries_json(bumps, "deformations")).list;
         std::vector<glm::dvec2> places(static_cast<std::size_t>(uv.shape(0)));
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = {uv.data()[2 * i], uv.data()[2 * i + 1]};
@@ -188,7 +189,7 @@ py::array_t<double> mix(const std::vector<Doubles>& shapes, const std::vector<do
     }
     py::array_t<double> mixed(shapes[0].size());
     double* to = mixed.mutable_data();
-    const py::gil_scoped_release unlock;
+    const Unlocked unlocked;
     inbetween<double>(data, weights, normalized ? WeightSum::normalized : WeightSum::checked,
                       shapes[0].size(), 1, to, default_parallel_for());
     return mixed;

@@ -22,6 +22,7 @@
 #include "anamorph/version.h"
 #include "arrays.h"
 #include "figures.h"
+#include "lock.h"
 #include "values.h"
 
 namespace py = pybind11;
@@ -167,7 +168,7 @@ ParallelFor interruptible(const ParallelFor& parallel_for) {
             body(i);
             if (std::this_thread::get_id() != caller || Clock::now() - *asked < std::chrono::milliseconds(50))
                 return;
-            const py::gil_scoped_acquire lock;
+            const Locked locked;
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             *asked = Clock::now();
         });
@@ -214,7 +215,7 @@ class ModulePicture {
         for (const auto& [key, image] : values.images)
             files.images[key] = keep(image.cast<const ModuleSource&>());
         const int number = subimage.is_none() ? 0 : integer("subimage", subimage);
-        const py::gil_scoped_release unlock;
+        const Unlocked unlocked;
         m_picture = std::make_shared<const ArrayPicture>(operation, values.assignments, inputs, files, number,
                                                          parallel_for());
     }
@@ -231,7 +232,7 @@ class ModulePicture {
     py::dict said() const { return dict_of(m_picture->said()); }
     py::dict reached() const {
         const Attributes attributes = [&] {
-            const py::gil_scoped_release unlock;
+            const Unlocked unlocked;
             return m_picture->reached(parallel_for());
         }();
         return dict_of(attributes);
@@ -270,10 +271,10 @@ class ModulePicture {
             throw py::type_error("progress must be callable");
         if (!progress.is_none())
             call = [&](int rows) {
-                const py::gil_scoped_acquire lock;
+                const Locked locked;
                 progress(rows);
             };
-        const py::gil_scoped_release unlock;
+        const Unlocked unlocked;
         m_picture->draw(pixels, x, y, parallel_for(), call);
     }
 
@@ -281,7 +282,7 @@ class ModulePicture {
         py::array_t<double> found({py::ssize_t{2}, x.size()});
         double* to = found.mutable_data();
         const PointArrays points{x.data(), y.data(), x.size()};
-        const py::gil_scoped_release unlock;
+        const Unlocked unlocked;
         m_picture->source_points(points, to, to + points.count, parallel_for());
         return found;
     }
@@ -289,7 +290,7 @@ class ModulePicture {
         py::array_t<double> found({x.size(), py::ssize_t{4}});
         double* to = found.mutable_data();
         const PointArrays points{x.data(), y.data(), x.size()};
-        const py::gil_scoped_release unlock;
+        const Unlocked unlocked;
         m_picture->jacobians(points, to, parallel_for());
         return found;
     }

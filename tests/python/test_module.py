@@ -611,6 +611,16 @@ class Calls(unittest.TestCase):
                 process.kill()
             self.assertEqual(process.returncode, 0)
 
+    def test_daemon_threads_when_python_ends(self):
+        code = ("import threading, time, numpy, anamorph\n"
+                "def draw(progress):\n"
+                "    while True: anamorph.map(numpy.zeros((64, 64, 3), 'f4'), u='x+1', v='y', size=(300, 300), progress=progress)\n"
+                "for progress in (None, abs, None, lambda rows: None): threading.Thread(target=draw, args=[progress], daemon=True).start()\n"
+                "time.sleep(0.3)\n")
+        for _ in range(4):
+            ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
     def test_threads_of_python(self):
         panorama = noise(128, 256)
         picture = anamorph.Picture("pano", panorama, fov=100, size=(200, 200))
