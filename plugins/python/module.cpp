@@ -197,6 +197,20 @@ int threads_of(const py::object& given) {
     return threads;
 }
 
+/// An error of a picture that could not be opened, and the key that is to blame.
+struct OpenError {
+    Error error;
+    std::string key;
+};
+
+/// The key whose name or whose file's name an error begins with, as those of what a file holds do; else what the error says.
+std::string key_to_blame(const Error& error, const std::vector<Assignment>& given) {
+    const std::string words = error.what();
+    for (const auto& [key, value] : given)
+        if (words.rfind(key + ":", 0) == 0 || words.rfind(printable(value) + ":", 0) == 0) return key;
+    return error.parameter();
+}
+
 /// A picture, and the arrays that it reads.
 class ModulePicture {
   public:
@@ -216,8 +230,12 @@ class ModulePicture {
             files.images[key] = keep(image.cast<const ModuleSource&>());
         const int number = subimage.is_none() ? 0 : integer("subimage", subimage);
         const Unlocked unlocked;
-        m_picture = std::make_shared<const ArrayPicture>(operation, values.assignments, inputs, files, number,
-                                                         parallel_for());
+        try {
+            m_picture = std::make_shared<const ArrayPicture>(operation, values.assignments, inputs, files,
+                                                             number, parallel_for());
+        } catch (const Error& error) {
+            throw OpenError{error, key_to_blame(error, values.assignments)};
+        }
     }
 
     const OIIO::ImageSpec& spec() const { return m_picture->spec(); }
@@ -382,13 +400,13 @@ py::dict dict_of(const Operation& operation) {
     return dict;
 }
 
-/// Hands errors on as anamorph.Error, which names the parameter.
-void throw_as(const py::handle& type, const Error& error) {
+/// Hands an error on as anamorph.Error, which names the parameter.
+void throw_as(const py::handle& type, const Error& error, const std::string& parameter) {
     // Names of files may be no text.
     const py::object words = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(error.what(), static_cast<py::ssize_t>(std::strlen(error.what())), "replace"));
     const py::object raised = type(words);
-    raised.attr("parameter") = error.parameter();
+    raised.attr("parameter") = parameter;
     PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
@@ -405,8 +423,10 @@ PYBIND11_MODULE(_core, m) {
     py::register_exception_translator([](std::exception_ptr failure) {
         try {
             if (failure) std::rethrow_exception(failure);
+        } catch (const OpenError& failed) {
+            throw_as(error_type, failed.error, failed.key);
         } catch (const Error& error) {
-            throw_as(error_type, error);
+            throw_as(error_type, error, error.parameter());
         }
     });
 

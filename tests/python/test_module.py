@@ -497,6 +497,16 @@ class BadInput(unittest.TestCase):
             with self.assertRaisesRegex(anamorph.Error, "mesh: cannot be written as JSON") as caught:
                 anamorph.warp(noise(32, 64), mesh={"columns": value})
             self.assertEqual(caught.exception.parameter, "mesh")
+        for keys, parameter in ((dict(deform=[1]), "deform"), (dict(deform={"deformations": [{"center": [1]}]}), "deform"),
+                                (dict(height="none.tif"), "height"), (dict(keys={"turn": [[0]]}), "keys")):
+            with self.subTest(keys), self.assertRaises(anamorph.Error) as caught:
+                anamorph.drape(noise(32, 64), **keys)
+            self.assertEqual(caught.exception.parameter, parameter)
+        pathlib.Path("no_mesh.json").write_text("{}")
+        for mesh in ({"columns": 1}, {"columns": 1, "rows": 1, "vertices": [[0, 0]]}, "no_mesh.json", "none.json"):
+            with self.subTest(mesh), self.assertRaises(anamorph.Error) as caught:
+                anamorph.warp(noise(32, 64), mesh=mesh)
+            self.assertEqual(caught.exception.parameter, "mesh")
         numbers = {**SHEET, "columns": np.int64(2), "vertices": np.array(SHEET["vertices"], np.float32)}
         np.testing.assert_array_equal(anamorph.warp(noise(48, 64), mesh=numbers), anamorph.warp(noise(48, 64), mesh=SHEET))
         with self.assertRaisesRegex(TypeError, "points is a ndarray"):
