@@ -303,8 +303,6 @@ class TriangleSubdivider {
 /// The map as one for chains: on each triangle its cubic, for boxes in one triangle; elsewhere pixels are exact.
 class TriangleMap {
   public:
-    static constexpr PlanCosts kCosts{.bound = 20, .further_bound = 4, .polynomial = 4, .rounding = 6};
-
     explicit TriangleMap(std::shared_ptr<const ScatteredPlan> plan) : m_plan(std::move(plan)) {}
 
     /// Are squares of 16 pixels about half of some places all over the picture each in one triangle?
