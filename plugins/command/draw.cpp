@@ -65,7 +65,7 @@ class Film {
         const int number = m_range->all ? m_numbers[static_cast<std::size_t>(i)]
                                         : m_range->first + static_cast<int>(i) * m_range->step;
         try {
-            const std::string output = numbered_name(m_drawing.output, number);
+            const PictureFile output{numbered_name(m_drawing.output, number), m_drawing.compression};
             if (m_all) {
                 const auto at = std::find(m_numbers.begin(), m_numbers.end(), number);
                 if (at == m_numbers.end()) throw Error("there is none of that number");
@@ -131,7 +131,8 @@ void draw_one(const Drawing& drawing) {
     const std::unique_ptr<PictureReader> picture = open_picture(drawing.recipe);
     Film::expect_one(*picture, drawing.recipe);
     Progress progress([&] { return tiles_of(picture->spec(0)).count(); }, "tiles");
-    draw_picture_file(*picture, 0, drawing.output, [&](std::int64_t tiles) { progress.advance(tiles); });
+    draw_picture_file(*picture, 0, {drawing.output, drawing.compression},
+                      [&](std::int64_t tiles) { progress.advance(tiles); });
 }
 
 }  // namespace

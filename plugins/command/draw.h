@@ -11,7 +11,8 @@ namespace anamorph::command {
 struct Drawing {
     std::string recipe;  ///< "{frame}" in it is the number of the frame
     std::string output;  ///< file; of frames with "{frame}", "%04d" or "####" for their numbers
-    std::optional<std::string> frames;  ///< "3", "1-48", "1-48x4", "all"
+    std::optional<std::string> frames;       ///< "3", "1-48", "1-48x4", "all"
+    std::optional<std::string> compression;  ///< that of PictureFile
     int jobs = 0;  ///< so many threads draw, each a frame where there are several; 0: one a processor
 };
 inline constexpr int kMostJobs = 256;

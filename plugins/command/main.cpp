@@ -42,13 +42,22 @@ void declare_recipes() {
 void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     struct Given {
         std::string recipe, output;
-        std::optional<std::string> part, crop, frames;
+        std::optional<std::string> part, crop, frames, compression;
         int jobs = 0;
         std::vector<std::string> names;
         int subimage = 0;
         bool timed = false;
     };
     const auto given = std::make_shared<Given>();
+
+    const auto add_compression = [given](CLI::App& command) {
+        return command
+            .add_option(
+                "--compression", given->compression,
+                "How FILE is packed, in its format's words: zip, filtered, huffman, rle or fixed of a PNG, "
+                "maybe with a level, such as zip:9; piz, zip, dwaa:45 of an EXR, jpeg:90")
+            ->option_text("NAME [rle for PNG]");
+    };
 
     CLI::App* hash = app.add_subcommand("hash", "Print the hash of pictures: of recipes and files");
     hash->add_option("PICTURE", given->names, "A recipe, or a file that OpenImageIO reads")->required();
@@ -85,6 +94,7 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
                      "default all of these if FILE has {frame}")
         ->option_text("A-B[xS]")
         ->excludes(part);
+    add_compression(*draw_command)->excludes(part);
     draw_command
         ->add_option("--jobs", given->jobs,
                      "Threads that draw, each a frame where there are several; 0 is one a processor")
@@ -92,7 +102,8 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     draw_command->callback([=, &run] {
         run = [=] {
             declare_recipes();
-            if (!given->part) return draw({given->recipe, given->output, given->frames, given->jobs});
+            if (!given->part)
+                return draw({given->recipe, given->output, given->frames, given->compression, given->jobs});
             use_threads(given->jobs);
             draw_part(given->recipe, share_of(*given->part), given->output);
         };
@@ -103,8 +114,12 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     join->add_option("PART", given->names, "All files of anamorph draw --part, in any order")->required();
     join->add_option("-o,--output", given->output, "The picture; without, parts are only checked")
         ->option_text("FILE");
+    add_compression(*join);
     join->callback([=, &run] {
-        run = [=] { std::cout << hash_digits(join_parts(given->names, given->output)) << std::endl; };
+        run = [=] {
+            std::cout << hash_digits(join_parts(given->names, {given->output, given->compression}))
+                      << std::endl;
+        };
     });
 
     CLI::App* explained = app.add_subcommand(

@@ -14,9 +14,7 @@
 #include <sstream>
 
 #include "anamorph/error.h"
-#include "anamorph/open_image.h"
 #include "anamorph/parameter/parameter.h"
-#include "output_file.h"
 
 namespace anamorph::command {
 
@@ -267,58 +265,6 @@ ImageSpec single_spec(PictureReader& picture, const std::string& recipe) {
     return picture.spec(0);
 }
 
-/// Why a file could not be written, where OpenImageIO has no word for it.
-std::string why_cut_off(const std::string& file) {
-    const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-    constexpr std::uintmax_t kNext = 1 << 20;
-    std::error_code unknown;
-    const std::filesystem::space_info space = std::filesystem::space(folder, unknown);
-    return !unknown && space.available < kNext ? std::strerror(ENOSPC)
-                                               : "it cannot be written as far as it goes";
-}
-
-std::string why_not(const OIIO::ImageOutput& out, const std::string& file) {
-    const std::string why = out.geterror();
-    return why.empty() ? why_cut_off(file) : why;
-}
-
-/// Is the last row in a file? OpenImageIO's writer of PNG does not see that it is cut off.
-bool has_last_row(const std::string& path, const ImageSpec& spec) {
-    const std::unique_ptr<OIIO::ImageInput> file = open_image(path);
-    if (!file) return !OIIO::ImageInput::create(path);  // not all that is written can be read
-    std::vector<std::byte> row(file->spec().scanline_bytes(true));
-    return file->spec().height == spec.height &&
-           file->read_native_scanline(0, 0, file->spec().y + spec.height - 1, 0, row.data());
-}
-
-/// Writes a picture whose rows of tiles `rows` makes, one after the other, under another name until it is whole.
-void write_picture(const ImageSpec& picture, const std::string& output,
-                   const std::function<void(std::int64_t row, std::vector<std::byte>& pixels)>& rows) {
-    ImageSpec spec = picture;
-    spec.tile_width = spec.tile_height = 0;
-    std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(output);
-    if (!out) throw Error(OIIO::geterror());
-    OutputFile file(output);
-    if (!out->open(file.path(), spec)) throw Error(printable(output) + ": " + out->geterror());
-    const TileGrid tiles = tiles_of(spec);
-    std::vector<std::byte> pixels(spec.pixel_bytes(true) * static_cast<std::size_t>(spec.width) *
-                                  TileGrid::kSide);
-    for (std::int64_t row = 0; row < tiles.rows(); ++row) {
-        rows(row, pixels);
-        const int y = static_cast<int>(row) * TileGrid::kSide,
-                  end = std::min(spec.height, y + TileGrid::kSide);
-        if (!out->write_scanlines(spec.y + y, spec.y + end, 0,
-                                  spec.channelformats.empty() ? spec.format : OIIO::TypeDesc(),
-                                  pixels.data()))
-            throw Error(printable(output) + ": " + why_not(*out, output));
-    }
-    if (!out->close()) throw Error(printable(output) + ": " + why_not(*out, output));
-    // OpenImageIO's writer of EXR leaves the file of an environment open until it ends itself, for further levels.
-    out.reset();
-    if (!has_last_row(file.path(), spec)) throw Error(printable(output) + ": " + why_cut_off(output));
-    file.close();
-}
-
 /// Copies a box that was read, packed, to where it stands among whole rows.
 void copy_to_rows(const ImageSpec& spec, const Box& box, const std::byte* from,
                   std::vector<std::byte>& rows) {
@@ -386,7 +332,7 @@ std::int64_t draw_part(const std::string& recipe, const Share& share, const std:
     return end - begin - there;
 }
 
-PictureHash join_parts(std::vector<std::string> files, const std::string& output) {
+PictureHash join_parts(std::vector<std::string> files, const PictureFile& output) {
     std::vector<Manifest> parts;
     for (const std::string& file : files) parts.push_back(read_manifest(file));
     std::vector<std::size_t> order(parts.size());
@@ -448,7 +394,7 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
         ++at;
         return box;
     };
-    if (output.empty()) {
+    if (output.name.empty()) {
         while (at < tiles.count()) next_tile();
         return hasher.hash();
     }
@@ -461,7 +407,7 @@ PictureHash join_parts(std::vector<std::string> files, const std::string& output
     return hasher.hash();
 }
 
-void draw_picture_file(PictureReader& picture, int subimage, const std::string& output,
+void draw_picture_file(PictureReader& picture, int subimage, const PictureFile& output,
                        const std::function<void(std::int64_t tiles)>& done) {
     const ImageSpec spec = picture.spec(subimage);
     const TileGrid tiles = tiles_of(spec);

@@ -12,6 +12,7 @@
 
 #include "anamorph/image/picture_hash.h"
 #include "picture_reader.h"
+#include "picture_writer.h"
 
 namespace anamorph::command {
 
@@ -32,13 +33,13 @@ Share share_of(const std::string& text);
 /// that the recipe is made of has changed. Returns how many tiles were drawn now. Throws Error.
 std::int64_t draw_part(const std::string& recipe, const Share& share, const std::string& file);
 
-/// Puts all parts of a picture together, in any order, as the picture `output`, or, where that is empty, only checks them: all are
+/// Puts all parts of a picture together, in any order, as the picture `output`, or, where that has no name, only checks them: all are
 /// there, of one picture, and each tile has its hash. Returns the hash of the picture. Throws Error.
-PictureHash join_parts(std::vector<std::string> files, const std::string& output);
+PictureHash join_parts(std::vector<std::string> files, const PictureFile& output);
 
 /// Draws one of a recipe's pictures as the file `output`, which is there when it is whole. `drawn` is called with the number of tiles
 /// that were drawn since. Throws Error.
-void draw_picture_file(PictureReader& picture, int subimage, const std::string& output,
+void draw_picture_file(PictureReader& picture, int subimage, const PictureFile& output,
                        const std::function<void(std::int64_t tiles)>& drawn);
 
 }  // namespace anamorph::command

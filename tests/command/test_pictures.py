@@ -302,11 +302,44 @@ class Pictures(unittest.TestCase):
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (50000, 50000))
 
-        for name in ("out.tif", "out.exr", "out.png", "out.ppm"):
-            status, out, error = self.run_program("draw", "sky.pano", "-o", name, preexec_fn=with_little_room)
-            self.assertEqual((status, out), (1, ""), name)
-            self.assertRegex(error.splitlines()[-1], rf"^anamorph: {name}: .*[a-z]{{4}}")  # libpng speaks before
-            self.assertFalse((self.folder / name).exists())
+        for name in ("out.tif", "out.exr", "out.png", "out.ppm", "out.jpg", "out.bmp"):
+            for jobs in ("1", "2"):
+                status, out, error = self.run_program("draw", "sky.pano", "-o", name, "--jobs", jobs, preexec_fn=with_little_room)
+                self.assertEqual((status, out), (1, ""), name)
+                self.assertRegex(error.splitlines()[-1], rf"^anamorph: {name}: .*[a-z]{{4}}")  # libpng speaks before
+                self.assertFalse((self.folder / name).exists())
+
+    def test_a_source_that_breaks_while_rows_are_written(self):
+        whole = noise_ppm(64, 2048)
+        (self.folder / "short.ppm").write_bytes(whole[:len(whole) // 2])
+        for jobs in ("1", "2"):
+            before = sorted(self.folder.iterdir())
+            self.refused("short.ppm", "draw", "short.ppm.lens?lens=brown:k1=0.001&fov=10", "-o", "out.tif", "--jobs", jobs)
+            self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_files_are_packed_as_asked(self):
+        hashes, sizes = set(self.hash("sky.pano")), {}
+        for how in (None, "rle", "rle:9", "huffman", "filtered", "fixed", "zip:0", "zip:1", "zip:9", "zip"):
+            name = f"{how}.png".replace(":", "-")
+            self.ok("draw", "sky.pano", "-o", name, *(["--compression", how] if how else []))
+            hashes.update(self.hash(name))
+            sizes[how] = (self.folder / name).stat().st_size
+        for how in ("none", "piz", "zip"):
+            name = f"{how}.exr"
+            self.ok("draw", "sky.pano", "-o", name, "--compression", how)
+            sizes["exr " + how] = (self.folder / name).stat().st_size
+        self.assertEqual(len(hashes), 1)
+        self.assertEqual(sizes[None], sizes["rle"])
+        self.assertLess(sizes["zip"], sizes["zip:1"])
+        self.assertGreater(sizes["zip:0"], 900 * 700 * 3)
+        self.assertLess(sizes["exr zip"], sizes["exr none"])
+        for words in ("", "zap", "zip:", "zip:10", "zip:-1", "zip:4x", "rle:", ":4", "zip:4:4"):
+            self.refused("must be zip, filtered, huffman, rle or fixed", "draw", "sky.pano", "-o", "no.png", "--compression", words)
+            self.assertFalse((self.folder / "no.png").exists())
+        self.ok("draw", "sky.pano", "--part", "1/1", "-o", "p1")
+        self.ok("join", "p1", "-o", "joined.png", "--compression", "zip:1")
+        self.assertEqual((self.folder / "joined.png").stat().st_size, sizes["zip:1"])
+        self.assertEqual(self.run_program("draw", "sky.pano", "--part", "1/1", "-o", "p1", "--compression", "zip")[0], 1)
 
     def explained(self, *arguments):
         """The lines of a page by their first words; several of one word are told apart by their number."""
