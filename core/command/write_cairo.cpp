@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// PDF and PNG, by cairo.
+// PDF and PNG, drawn by cairo.
 #include "film_writer.h"
 #include "frame_range.h"
+#include "write_png.h"
 #include "writers.h"
 
 #ifdef ANAMORPH_HAVE_CAIRO
@@ -121,12 +122,27 @@ class PngWriter : public DrawingWriter {
         const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
         check(cairo_surface_status(surface.get()));
         draw_on(surface.get(), drawing);
+        cairo_surface_flush(surface.get());
+        const unsigned char* const pixels = cairo_image_surface_get_data(surface.get());
+        const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface.get());
+        std::vector<std::uint8_t> rgb;
+        rgb.reserve(std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        for (int y = 0; y < height; ++y) add_row(pixels + y * stride, width, rgb);
         OutputFile file(m_several ? numbered_name(m_name, drawing.frame) : m_name);
-        check(cairo_surface_write_to_png_stream(surface.get(), write_to, &file));
+        write_png(file, width, height, rgb);
         file.close();
     }
 
   private:
+    /// Adds a row of pixels of 32 bits, in the machine's order of bytes.
+    static void add_row(const unsigned char* from, int width, std::vector<std::uint8_t>& rgb) {
+        for (int x = 0; x < width; ++x, from += 4) {
+            std::uint32_t pixel = 0;
+            std::memcpy(&pixel, from, sizeof pixel);
+            for (const int shift : {16, 8, 0}) rgb.push_back(static_cast<std::uint8_t>(pixel >> shift));
+        }
+    }
+
     std::string m_name;
     bool m_several;
 };
@@ -136,19 +152,8 @@ class PngFramesWriter : public FilmWriter {
     PngFramesWriter(std::string name, int width, int height)
         : m_name(std::move(name)), m_width(width), m_height(height) {}
     void add(const FilmFrame& frame) override {
-        const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, m_width, m_height));
-        check(cairo_surface_status(surface.get()));
-        unsigned char* row = cairo_image_surface_get_data(surface.get());
-        const std::uint8_t* from = frame.pixels.data();
-        for (int y = 0; y < m_height; ++y, row += cairo_image_surface_get_stride(surface.get()))
-            for (int x = 0; x < m_width; ++x, from += 3) {
-                const std::uint32_t pixel =
-                    std::uint32_t{from[0]} << 16 | std::uint32_t{from[1]} << 8 | from[2];
-                std::memcpy(row + 4 * x, &pixel, sizeof pixel);
-            }
-        cairo_surface_mark_dirty(surface.get());
         OutputFile file(numbered_name(m_name, frame.number));
-        check(cairo_surface_write_to_png_stream(surface.get(), write_to, &file));
+        write_png(file, m_width, m_height, frame.pixels);
         file.close();
     }
 

@@ -468,6 +468,46 @@ class Pictures(Case):
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", data[16:24]), (100, 100))
 
+    def pixels_of_png(self, data):
+        """Rows of bytes, three a pixel, of a PNG without filters, each of whose chunks is whole."""
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        at, chunks = 8, []
+        while at < len(data):
+            size, kind = struct.unpack_from(">I4s", data, at)
+            self.assertEqual(zlib.crc32(data[at + 4:at + 8 + size]), struct.unpack_from(">I", data, at + 8 + size)[0], kind)
+            chunks.append((kind, data[at + 8:at + 8 + size]))
+            at += 12 + size
+        kinds = [kind for kind, _ in chunks]
+        self.assertEqual((kinds[0], kinds[-1]), (b"IHDR", b"IEND"))
+        width, height, *how = struct.unpack(">IIBBBBB", chunks[0][1])
+        self.assertEqual(how, [8, 2, 0, 0, 0])
+        raw = zlib.decompress(b"".join(part for kind, part in chunks if kind == b"IDAT"))
+        self.assertEqual(len(raw), height * (1 + 3 * width))
+        rows = [raw[k:k + 1 + 3 * width] for k in range(0, len(raw), 1 + 3 * width)]
+        self.assertEqual({row[0] for row in rows}, {0})
+        return [row[1:] for row in rows]
+
+    @unittest.skipUnless(CAIRO, "built without cairo")
+    def test_png_has_the_pixels_that_are_drawn(self):
+        # A sphere of red, filled, on white.
+        script = self.write("s.n", scene(("e", (200, 200, 200), (500, 500, 500)), extra="repeat 0 1 colour e 255 0 0\n"))
+        self.output("png", script, "--size", "50", "--fill", "-o", self.path("s.png"))
+        rows = self.pixels_of_png(self.read("s.png"))
+        pixel = lambda x, y: tuple(rows[y][3 * x:3 * x + 3])
+        self.assertEqual(pixel(0, 0), (255, 255, 255))
+        self.assertEqual(pixel(49, 49), (255, 255, 255))
+        self.assertEqual(pixel(25, 25), (255, 0, 0))
+        self.output("film", script, "--size", "50", "--frame", "1", "-o", self.path("f.png"))
+        rows = self.pixels_of_png(self.read("f.0001.png"))
+        red, green, blue = pixel(25, 25)
+        self.assertGreater(red, 100)
+        self.assertEqual((green, blue), (0, 0))
+        # A large picture, and a single pixel.
+        self.output("png", WALKER, "--size", "8000", "-o", self.path("big.png"))
+        rows = self.pixels_of_png(self.read("big.png"))
+        self.assertEqual((len(rows), len(rows[0])), (8000, 24000))
+        self.output("png", WALKER, "--size", "1", "-o", self.path("dot.png"))
+        self.assertEqual(len(self.pixels_of_png(self.read("dot.png"))), 1)
 
     def test_fit_fills_the_page_but_for_its_margin(self):
         for options in ((), ("--perspective", "3000")):
