@@ -126,6 +126,7 @@ OTHERS = [
     Other("python", "import vtkAnamorphNonlinearTexture\n", "vtk", "bent"),
     Other("python", "import vtkAnamorphBlendShapeWriter\n", "vtk", "writer"),
     Other("python", "import vtkAnamorphImageWarp\n", "vtk", "warp"),
+    Other("python", "import vtkAnamorphImageMorph\n", "vtk", "morph"),
     Other("python", "import vtkAnamorphPanoramaProjection\n", "vtk", "project"),
     Other("python", "vtkAnamorphProjectionShader()", "vtk", "shader"),
     Other("python", "projector.SetCircles(", "vtk", "mosaics"),

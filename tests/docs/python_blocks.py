@@ -7,7 +7,7 @@ import numpy as np
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkLineSource, vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture,
                                          vtkWindowToImageFilter)
@@ -117,6 +117,18 @@ def check_warp():
     assert warp.GetMaxError() <= 0.05
 
 
+def check_morph():
+    lines, other_lines = vtkLineSource(), vtkLineSource()
+    for source, height in ((lines, 10), (other_lines, 20)):
+        source.SetPoint1(15, height, 0)
+        source.SetPoint2(45, height, 0)
+    names = {"image": red_picture(), "other": red_picture(), "lines": lines, "other_lines": other_lines}
+    vtk_to_numpy(names["other"].GetPointData().GetScalars())[:] = (50, 220, 20)
+    morph = run("morph", names)["morph"]
+    assert (vtk_to_numpy(morph.GetOutput().GetPointData().GetScalars()) == [200, 70, 20]).all()
+    assert morph.GetMaxError() <= 0.01
+
+
 def check_project():
     scene = vtkSphereSource()
     scene.SetRadius(5)
@@ -166,7 +178,7 @@ def check_mapper():
 
 
 checks = {"start": check_start, "deform": check_deform, "image": check_image, "bent": check_bent, "writer": check_writer, "warp": check_warp,
-          "project": check_project, "shader": check_shader, "view": check_view, "mapper": check_mapper}
+          "morph": check_morph, "project": check_project, "shader": check_shader, "view": check_view, "mapper": check_mapper}
 for check in checks.values():
     check()
 assert set(TEXT) == {*checks, "depths", "anchor", "first bump", "labels", "mosaics", "textures"}, TEXT.keys()

@@ -50,6 +50,7 @@ for kind in ("Sphere", "Plane", "Wavelet", "Slice"):
             print(f"# {name} on {kind}", file=sys.stderr, flush=True)
             # The window asks for a second input, which these cannot do without.
             seconds = {"AnamorphProjectionBake": lambda: {"Panoramas": Wavelet(WholeExtent=[0, 63, 0, 31, 0, 0])},
+                       "AnamorphImageMorph": lambda: {"Other": Wavelet(WholeExtent=[0, 20, 0, 20, 0, 0], Maximum=100)},
                        "AnamorphImageWarp": lambda: {"Mesh": Plane(Origin=[-10, -10, 0], Point1=[10, -10, 0], Point2=[-10, 10, 0])}}
             more = seconds.get(name, dict)()
             filter = getattr(simple, name)(Input=source, **more)
@@ -72,7 +73,7 @@ print("every one")
 
 # Filters of figures want the array Axes, those of pictures an image, and textures are baked or laid on a mesh with texture coordinates.
 GREYED = {name: "Sphere,Plane,Wavelet,Slice" for name in ("AnamorphFigureGeometry", "AnamorphFigureOutline", "AnamorphFigureSkeleton", "AnamorphFigureImage")}
-GREYED.update({name: "Sphere,Plane,Wavelet" for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView", "AnamorphImageWarp")})
+GREYED.update({name: "Sphere,Plane,Wavelet" for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView", "AnamorphImageMorph", "AnamorphImageWarp")})
 GREYED.update({"AnamorphDeformImage": "Sphere,Plane", "AnamorphProjectionBake": "Sphere,Wavelet,Slice",
                "AnamorphNonlinearTexture": "Sphere,Wavelet,Slice"})
 folders = [os.environ[place] + "/plugins/paraview/anamorph/*.xml" for place in ("ANAMORPH_SOURCE_DIR", "ANAMORPH_BUILD_DIR")]

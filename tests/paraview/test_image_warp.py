@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # host: pvpython
 """Anamorph Image Warp behind Anamorph Deform on a Plane: what Deform's bump moves in the plane, it moves in the image, whenever the bump
-is another; and by a mesh that Transform turns, the image turns."""
+is another; and by a mesh that Transform turns, the image turns. Anamorph Image Morph between images with a Line over each: it goes with the lines, over time too."""
 import os
 
 import numpy as np
@@ -65,4 +65,28 @@ c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
 x, y = c * X - s * Y, s * X + c * Y
 inside = (np.abs(x) < 39) & (np.abs(y) < 39)
 assert np.abs(pixels(other) - bilinear(x, y))[inside].max() < 1e-3 * np.ptp(GIVEN)
+
+# One line, or two, as far up over the second image: the first one's color in the second one's shape is as far up.
+second = Wavelet(WholeExtent=[-40, 40, -40, 40, 0, 0], XFreq=2, YFreq=5, ZFreq=0)
+lines = [Line(Point1=[-20, y, 0], Point2=[20, y, 0], Resolution=1) for y in (0, 10)]
+for source in (second, *lines):
+    source.UpdatePipeline()
+SetActiveSource(image)
+morph = AnamorphImageMorph(Input=image, Other=second, Lines=lines[0], OtherLines=lines[1], Interpolation="Linear", ColorFollowsShape=0, Shape=1, Color=0)
+assert np.abs(pixels(morph)[10:] - GIVEN[:-10]).max() < 1e-3 * np.ptp(GIVEN)
+lines[1].Point1, lines[1].Point2 = [-20, -5, 0], [20, -5, 0]
+assert np.abs(pixels(morph)[:-5] - GIVEN[5:]).max() < 1e-3 * np.ptp(GIVEN), "the line was moved"
+more = [AppendGeometry(Input=[line, Transform(Input=line)]) for line in lines]
+for both in more:
+    both.Input[1].Transform.Translate = [0, 30, 0]
+morph.Lines, morph.OtherLines = more
+assert np.abs(pixels(morph)[:-5] - GIVEN[5:]).max() < 1e-3 * np.ptp(GIVEN), "two lines"
+morph.ColorFollowsShape = 1
+scene = GetAnimationScene()
+scene.StartTime, scene.EndTime = 0, 1
+track = GetAnimationTrack("Shape", proxy=morph)
+track.KeyFrames = [CompositeKeyFrame(KeyTime=0, KeyValues=[0]), CompositeKeyFrame(KeyTime=1, KeyValues=[1])]
+for time, whole in ((0, GIVEN), (1, pixels(second))):
+    scene.AnimationTime = time
+    assert morph.Shape == time and np.abs(pixels(morph) - whole).max() < 1e-3 * np.ptp(GIVEN), time
 print("image warp: as it should be")

@@ -27,6 +27,7 @@ NO_PROPERTY = {
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection",
                           "SetOrientation", "SetMirror", "SetDeformationName"},  # Frames and Names have them
     "vtkAnamorphDeformImage": {"SetDeformationList"},
+    "vtkAnamorphImageMorph": {"SetOtherConnection", "SetLinesConnection", "SetOtherLinesConnection"},
     "vtkAnamorphImageWarp": {"SetMeshConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphPanoramaProjection": {"SetController", "SetTimeBudget"},  # the proxy gives it time
@@ -60,6 +61,7 @@ OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider, of a hundred steps, for what has two ends: of farther ones no step would be of use. Ends beyond this are left to the filter, and
 # the panel shows a field.
 FAR = 720
+SLIDER_STEPS = 100  # a default that lies before half of the first is a field's, too
 
 
 def proxies():
@@ -137,8 +139,10 @@ def core_rows():
             menus[texts[0]] = texts[1:]
             continue
         standard, least, most, above, below, integer = (float(text) for text in texts)
+        steps = (standard - least) / (most - least) * SLIDER_STEPS
+        slid = abs(most) < FAR and (steps == 0 or steps > 0.5)
         rows[name] = {"default": standard, "min": least + 0.001 * above if abs(least) < FAR else None,
-                      "max": most - 0.001 * below if abs(most) < FAR else None, "integer": bool(integer)}
+                      "max": most - 0.001 * below if slid else None, "integer": bool(integer)}
     assert len(rows) >= 9 and menus, rows
     return rows, menus
 
@@ -240,7 +244,7 @@ def with_input(cls):
     """A new object that has what it needs to execute, seen by a camera."""
     new = cls()
     if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape, anamorph.vtkAnamorphPanoramaView,
-               anamorph.vtkAnamorphDeformImage, anamorph.vtkAnamorphImageWarp):
+               anamorph.vtkAnamorphDeformImage, anamorph.vtkAnamorphImageMorph, anamorph.vtkAnamorphImageWarp):
         picture = vtkRTAnalyticSource()
         picture.SetWholeExtent(0, 9, 0, 19, 0, 0)  # twice as high as wide, as the last projection is
         picture.Update()
@@ -249,6 +253,8 @@ def with_input(cls):
             relief = with_input(anamorph.vtkAnamorphReliefSource)
             relief.Update()
             new.SetInputData(1, relief.GetOutput())
+        elif cls is anamorph.vtkAnamorphImageMorph:
+            new.SetInputData(1, picture.GetOutput())
         elif cls is anamorph.vtkAnamorphImageWarp:
             mesh = vtkPlaneSource()
             mesh.Update()

@@ -235,11 +235,22 @@ def an_image_warped_by_a_mesh():
     apply(warp, Amount=.5, Tolerance=.001, Interpolation=1)
 
 
+def an_image_that_becomes_another():
+    images = [Wavelet(registrationName=name, WholeExtent=[0, 20, 0, 20, 0, 0], Maximum=most) for name, most in (("image", 255), ("second", 99))]
+    lines = [Line(registrationName=name, Point1=[4, 5, 0], Point2=end, Resolution=1) for name, end in (("from", [15, 6, 0]), ("to", [12, 14, 0]))]
+    for source in images + lines:
+        source.UpdatePipeline()
+    SetActiveSource(images[0])
+    morph = AnamorphImageMorph(registrationName="result", Input=images[0], Other=images[1], Lines=lines[0], OtherLines=lines[1])
+    apply(morph, Shape=.25, PinBorder=1, Tolerance=.001, Interpolation=1)
+    apply(morph, ColorFollowsShape=0, Color=.75, WeightA=.5, WeightB=1, WeightP=1)
+
+
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row, shapes_of_files,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
             a_texture_on_few_polygons, a_panorama_baked, a_view_of_a_panorama, a_volume_deformed, a_whole_table,
-            splats_of_a_file, an_image_warped_by_a_mesh]
+            splats_of_a_file, an_image_warped_by_a_mesh, an_image_that_becomes_another]
 
 
 # ---- What is compared ----

@@ -8,6 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 
 SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
@@ -33,6 +34,13 @@ def plane():
     return source.GetOutput()
 
 
+def plane_lines():
+    edges = vtkFeatureEdges()
+    edges.SetInputData(plane())
+    edges.Update()
+    return edges.GetOutput()
+
+
 def file_of(name):
     return lambda made: getattr(made, "AddFileName" if "BlendShape" in made.GetClassName() else "SetFileName")(os.path.join(SOURCE, name))
 
@@ -55,6 +63,7 @@ INPUTS = {
     "FigureOutline": ({0: figures}, None),
     "FigureReader": ({}, file_of("examples/figures/walker.nudes")),
     "FigureSkeleton": ({0: figures}, None),
+    "ImageMorph": ({0: image, 1: image, 2: plane_lines, 3: plane_lines}, None),
     "ImageWarp": ({0: image, 1: plane}, None),
     "Inbetween": ({0: plane}, None),
     "NonlinearTexture": ({0: plane}, None),

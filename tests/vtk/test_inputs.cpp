@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <vtkAnamorphDeform.h>
 #include <vtkAnamorphDrape.h>
+#include <vtkAnamorphImageMorph.h>
 #include <vtkAnamorphImageWarp.h>
 #include <vtkAnamorphNonlinearTexture.h>
 #include <vtkAnamorphPanoramaProjection.h>
@@ -38,6 +39,8 @@ TEST(VtkInputs, WhatIsNotConnectedIsSaidInOurWords) {
                 HasSubstr("the mesh is not given: input port 0 must be connected"));
     EXPECT_THAT(said_by(vtkNew<vtkAnamorphImageWarp>()),
                 HasSubstr("the image is not given: input port 0 must be connected"));
+    EXPECT_THAT(said_by(vtkNew<vtkAnamorphImageMorph>()),
+                HasSubstr("the first image is not given: input port 0 must be connected"));
     vtkNew<vtkAnamorphProjectionBake> bake;
     EXPECT_THAT(said_by(bake), HasSubstr("the mesh is not given: input port 0 must be connected"));
     vtkNew<vtkPlaneSource> plane;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "image_texture.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
@@ -60,10 +61,9 @@ anamorph::ControlMesh control_mesh(vtkPointSet* points, vtkImageData* image, con
     for (const double v : rows) mesh.y_lines.push_back(0.5 + v * (height - 1));
     mesh.vertices.assign(count, {NAN, NAN});
     for (std::size_t i = 0; i < count; ++i) {
-        double at[3], index[3];
+        double at[3];
         points->GetPoint(static_cast<vtkIdType>(i), at);
-        image->TransformPhysicalPointToContinuousIndex(at, index);
-        const anamorph::Point<double> place{index[0] - extent[0] + 0.5, extent[3] - index[1] + 0.5};
+        const anamorph::Point<double> place = pixel_place(image, extent, at);
         if (!std::isfinite(place.x) || !std::isfinite(place.y))
             throw Error("point " + std::to_string(i) + " of the mesh must be finite");
         mesh.vertices[place_in(rows, down[i]) * columns.size() + place_in(columns, across[i])] = place;

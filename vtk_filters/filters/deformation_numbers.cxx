@@ -9,7 +9,7 @@
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
-#include "anamorph/parameter/text_file.h"
+#include "text_of_file.h"
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
 #include "vtkStringArray.h"
@@ -115,17 +115,8 @@ Numbers numbers_of(const DeformationEntry& entry) {
 }
 
 std::vector<Numbers> read_deformations(const std::string& file_name) {
-    std::ifstream file(file_name, std::ios::binary | std::ios::ate);
-    if (!file) throw Error(file_name + ": cannot be read");
-    const std::streamoff size = file.tellg();
-    if (size < 0 || static_cast<std::size_t>(size) > anamorph::text_file::kMostBytes)
-        throw Error(file_name + ": must be at most " + std::to_string(anamorph::text_file::kMostBytes) +
-                    " bytes long");
-    std::string text(static_cast<std::size_t>(size), '\0');
-    file.seekg(0);
-    if (!file.read(text.data(), size)) throw Error(file_name + ": cannot be read");
     std::vector<Numbers> list;
-    for (const DeformationEntry& entry : anamorph::parse_entries_file(text, file_name))
+    for (const DeformationEntry& entry : anamorph::parse_entries_file(text_of_file(file_name), file_name))
         list.push_back(numbers_of(entry));
     return list;
 }

@@ -13,6 +13,12 @@ namespace anamorph_vtk {
 using anamorph::Error;
 using anamorph::PixelType;
 
+anamorph::Point<double> pixel_place(vtkImageData* image, const int* extent, const double* point) {
+    double index[3];
+    image->TransformPhysicalPointToContinuousIndex(point, index);
+    return {index[0] - extent[0] + 0.5, extent[3] - index[1] + 0.5};
+}
+
 PixelType pixel_type(vtkDataArray* array, const std::string& name) {
     switch (array->GetDataType()) {
         case VTK_UNSIGNED_CHAR:

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "anamorph/geometry/point.h"
 #include "anamorph/geometry/size.h"
 #include "anamorph/image/view.h"
 #include "vtkSmartPointer.h"
@@ -17,6 +18,9 @@ namespace anamorph_vtk {
 inline int alpha_of(int components) {
     return components % 2 == 0 ? components - 1 : -1;
 }
+
+/// Where a point of space is in an image of this whole extent: in pixels from the upper left, whose centres are at halves.
+anamorph::Point<double> pixel_place(vtkImageData* image, const int* extent, const double* point);
 
 /// The type of the numbers of a picture, which messages call `name`. Throws Error.
 anamorph::PixelType pixel_type(vtkDataArray* array, const std::string& name);

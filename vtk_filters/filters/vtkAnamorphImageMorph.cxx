@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphImageMorph.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "anamorph/error.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/morph/features_file.h"
+#include "anamorph/morph/morph.h"
+#include "anamorph/operation/solved.h"
+#include "attribute_fields.h"
+#include "execution.h"
+#include "feature_cells.h"
+#include "image_texture.h"
+#include "text_of_file.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+vtkObjectFactoryNewMacro(vtkAnamorphImageMorph);
+
+namespace {
+
+using anamorph::Error;
+using Executive = vtkStreamingDemandDrivenPipeline;
+
+constexpr anamorph::Filter kFilters[] = {anamorph::Filter::nearest, anamorph::Filter::bilinear,
+                                         anamorph::Filter::bicubic, anamorph::Filter::antialias};
+constexpr int kImages = 2, kPorts = 4;
+
+/// The array of the second image that belongs to one of the first.
+vtkDataArray* array_like(vtkDataArray* first, vtkImageData* image) {
+    const char* name = first ? first->GetName() : nullptr;
+    vtkDataArray* same = name ? image->GetPointData()->GetArray(name) : nullptr;
+    return same ? same : image->GetPointData()->GetScalars();
+}
+
+std::shared_ptr<anamorph::Features> features_in_file(const std::string& name) {
+    auto features = std::make_shared<anamorph::Features>(
+        anamorph::parse_features_file(anamorph_vtk::text_of_file(name), name));
+    if (features->shapes() != kImages)
+        throw Error("FileName", name,
+                    "the file has features of " + std::to_string(features->shapes()) +
+                        " images: must have those of 2");
+    return features;
+}
+
+}  // namespace
+
+vtkAnamorphImageMorph::vtkAnamorphImageMorph() {
+    this->SetNumberOfInputPorts(kPorts);
+    this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                                 vtkDataSetAttributes::SCALARS);
+}
+
+vtkAnamorphImageMorph::~vtkAnamorphImageMorph() {
+    this->SetFileName(nullptr);
+}
+
+void vtkAnamorphImageMorph::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
+       << indent << "Shape: " << this->Shape << "\n"
+       << indent << "Color: " << this->Color << "\n"
+       << indent << "ColorFollowsShape: " << this->ColorFollowsShape << "\n"
+       << indent << "WeightA: " << this->WeightA << "\n"
+       << indent << "WeightB: " << this->WeightB << "\n"
+       << indent << "WeightP: " << this->WeightP << "\n"
+       << indent << "PinBorder: " << this->PinBorder << "\n"
+       << indent << "Interpolation: " << this->Interpolation << "\n"
+       << indent << "Tolerance: " << this->Tolerance << "\n"
+       << indent << "MaxError: " << this->MaxError << "\n";
+}
+
+void vtkAnamorphImageMorph::SetOtherConnection(vtkAlgorithmOutput* output) {
+    this->SetInputConnection(1, output);
+}
+
+void vtkAnamorphImageMorph::SetLinesConnection(vtkAlgorithmOutput* output) {
+    this->SetInputConnection(2, output);
+}
+
+void vtkAnamorphImageMorph::SetOtherLinesConnection(vtkAlgorithmOutput* output) {
+    this->SetInputConnection(3, output);
+}
+
+int vtkAnamorphImageMorph::FillInputPortInformation(int port, vtkInformation* info) {
+    info->Set(INPUT_REQUIRED_DATA_TYPE(), port < kImages ? "vtkImageData" : "vtkPolyData");
+    info->Set(INPUT_IS_OPTIONAL(), 1);  // has_inputs() tells of the images in our own words
+    return 1;
+}
+
+vtkTypeBool vtkAnamorphImageMorph::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                                  vtkInformationVector* outputs) {
+    if (!anamorph_vtk::has_inputs(this, {"the first image", "the second image"})) return 0;
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+int vtkAnamorphImageMorph::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                               vtkInformationVector*) {
+    // Any part of the picture may come from anywhere, along any of the lines.
+    for (int port = 0; port < kPorts; ++port) {
+        vtkInformation* info = inputs[port]->GetInformationObject(0);
+        if (!info) continue;
+        if (port < kImages) {
+            if (info->Has(Executive::WHOLE_EXTENT()))
+                info->Set(Executive::UPDATE_EXTENT(), info->Get(Executive::WHOLE_EXTENT()), 6);
+            continue;
+        }
+        info->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
+        info->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
+        info->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+    return 1;
+}
+
+int vtkAnamorphImageMorph::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                       vtkInformationVector* outputs) {
+    vtkImageData* output = vtkImageData::GetData(outputs);
+    output->Initialize();
+    this->MaxError = 0;
+    return anamorph_vtk::guarded(
+        this,
+        [&] {
+            this->Draw(inputs, outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT()), output);
+        },
+        {output});
+}
+
+/// Draws the pixels of an extent.
+void vtkAnamorphImageMorph::Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output) {
+    if (extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5]) return;
+    vtkImageData* const images[kImages] = {vtkImageData::GetData(inputs[0]),
+                                           vtkImageData::GetData(inputs[1])};
+    vtkDataArray* const given = this->GetInputArrayToProcess(0, inputs);
+    const anamorph_vtk::ImageTexture a(images[0], given, "the first image"),
+        b(images[1], array_like(given, images[1]), "the second image");
+    const int channels = a.view().channels;
+    if (b.view().channels != channels || b.type() != a.type())
+        throw Error("the second image has " + std::to_string(b.view().channels) + " components of " +
+                    vtkImageScalarTypeNameMacro(b.type()) + ", but must be as the first, which has " +
+                    std::to_string(channels) + " of " + vtkImageScalarTypeNameMacro(a.type()));
+
+    vtkPolyData* const lines[kImages] = {vtkPolyData::GetData(inputs[2]), vtkPolyData::GetData(inputs[3])};
+    const bool file = this->FileName && *this->FileName;
+    if (file && (lines[0] || lines[1]))
+        throw Error("FileName", this->FileName, "must not be given together with lines");
+    const std::shared_ptr<anamorph::Features> features =
+        file ? features_in_file(this->FileName) : anamorph_vtk::features_of(lines, images);
+    if (this->PinBorder > 0) features->pin_border(this->PinBorder);
+    // Nothing moves where the border alone is held.
+    if (features->size() == 0 && features->border_weight() == 0) features->pin_border(1);
+
+    anamorph::MorphOptions options;
+    options.tol = this->Tolerance;
+    options.filter = kFilters[this->Interpolation];
+    options.t = this->Shape;
+    if (!this->ColorFollowsShape) options.t_color = this->Color;
+    options.weight_a = this->WeightA;
+    options.weight_b = this->WeightB;
+    options.weight_p = this->WeightP;
+    const std::unique_ptr<const anamorph::SolvedPicture> picture =
+        anamorph::solved(anamorph::morphed_picture(features, {a.size(), b.size()}, a.size(), options));
+
+    const int* whole = images[0]->GetExtent();
+    output->CopyStructure(images[0]);
+    output->SetExtent(extent[0], extent[1], extent[2], extent[3], whole[4], whole[5]);
+    const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(a.type()));
+    array->SetName(given->GetName());
+    array->SetNumberOfComponents(channels);
+    array->SetNumberOfTuples(output->GetNumberOfPoints());
+    output->GetPointData()->SetScalars(array);
+
+    anamorph_vtk::Execution execution(this);
+    const int alpha = anamorph_vtk::alpha_of(channels);
+    const anamorph::MemorySource base_a(a.view(), alpha), base_b(b.view(), alpha);
+    const anamorph::Pyramid source_a(base_a), source_b(base_b);
+    const anamorph::Box box{extent[0] - whole[0], whole[3] - extent[3], extent[1] + 1 - whole[0],
+                            whole[3] + 1 - extent[2]};
+    if (!picture->draw({&source_a, &source_b}, box,
+                       anamorph_vtk::turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)),
+                                                 a.view().type, box.width(), box.height(), channels),
+                       execution.stage(0.05, 0.95)))
+        throw Error("the images cannot be read");
+    for (const anamorph::Attribute& attribute : picture->reached(execution.stage(0.95, 1))) {
+        if (attribute.name.starts_with("anamorph:")) anamorph_vtk::add_field(attribute, output);
+        if (attribute.name == "anamorph:max_error") this->MaxError = std::get<double>(attribute.value);
+    }
+}
