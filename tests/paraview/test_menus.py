@@ -41,6 +41,19 @@ def offered(name, source):
         inputs.RemoveAllUncheckedProxies()
 
 
+def missing(name, source):
+    """The kind of the first domain in which a source is not, of which a menu makes the words why a filter is not offered."""
+    inputs = servermanager.ProxyManager().GetPrototypeProxy("filters", name).GetProperty("Input")
+    inputs.RemoveAllUncheckedProxies()
+    inputs.AddUncheckedInputConnection(source.SMProxy, 0)
+    domains = inputs.NewDomainIterator()
+    domains.Begin()
+    while domains.GetDomain().IsInDomain(inputs):
+        domains.Next()
+    inputs.RemoveAllUncheckedProxies()
+    return domains.GetDomain().GetClassName()
+
+
 # A sphere has an array of three components, its normals, and none of axes; an array of that name has to have three.
 sphere = Sphere()
 numbers = Calculator(Input=sphere, ResultArrayName="Axes", Function="coordsX")
@@ -50,6 +63,8 @@ for source in (sphere, numbers, vectors):
 for name in ("AnamorphFigureGeometry", "AnamorphFigureOutline", "AnamorphFigureImage", "AnamorphFigureSkeleton"):
     assert [offered(name, source) for source in (sphere, numbers, vectors)] == [False, False, True], name
     assert all(offered(name, source) for source in figures), name
+    # An array of three components there is: no menu may say that it is missing.
+    assert missing(name, sphere) == "vtkSMAnamorphArrayDomain", (name, missing(name, sphere))
 
 
 # What moves points takes grids whose points are implied, and blocks and levels of them; trees of cells are greyed out.
@@ -74,9 +89,12 @@ assert warped.GetDataInformation().GetNumberOfPoints() == levels.GetDataInformat
 slice_, ball = Wavelet(WholeExtent=[0, 9, 0, 9, 0, 0]), simple.Sphere()
 for source in (slice_, ball):
     source.UpdatePipeline()
-for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView"):
+for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView", "AnamorphImageWarp", "AnamorphImageMorph"):
     allowed = [offered(name, source) for source in (slice_, wavelet, ball)]
     assert allowed == [True, False, False], (name, allowed)
+    assert missing(name, wavelet) == "vtkSMAnamorphSliceDomain", (name, missing(name, wavelet))
+for name in ("AnamorphNonlinearTexture", "AnamorphProjectionBake"):
+    assert missing(name, ball) == "vtkSMAnamorphArrayDomain", (name, missing(name, ball))
 
 
 def errors_of(filter, **values):

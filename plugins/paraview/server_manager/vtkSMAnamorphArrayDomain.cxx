@@ -2,6 +2,8 @@
 #include "vtkSMAnamorphArrayDomain.h"
 
 #include <algorithm>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "vtkDataSetAttributes.h"
@@ -34,26 +36,27 @@ int vtkSMAnamorphArrayDomain::ReadXMLAttributes(vtkSMProperty* property, vtkPVXM
         return 0;
     }
     this->ArrayName = name ? name : "";
+    std::istringstream counts(element->GetAttributeOrEmpty("number_of_components"));
+    for (std::string count; std::getline(counts, count, ',');)
+        this->ComponentCounts.push_back(std::stoi(count));
     return 1;
 }
 
 int vtkSMAnamorphArrayDomain::IsInDomain(vtkSMProperty* property) {
-    if (!this->Superclass::IsInDomain(property)) return NOT_IN_DOMAIN;
     auto* inputs = vtkSMInputProperty::SafeDownCast(property);
     if (!inputs) return NOT_IN_DOMAIN;
-    const std::vector<int> components = this->GetAcceptableNumbersOfComponents();
     for (unsigned int i = 0; i < inputs->GetNumberOfUncheckedProxies(); ++i) {
         auto* source = vtkSMSourceProxy::SafeDownCast(inputs->GetUncheckedProxy(i));
         if (!source) return NOT_IN_DOMAIN;
         vtkPVDataInformation* data =
             source->GetDataInformation(inputs->GetUncheckedOutputPortForConnection(i));
-        vtkPVArrayInformation* array = nullptr;
-        if (data && this->ArrayName.empty())
-            array = data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::TCOORDS);
-        else if (data)
-            array = data->GetArrayInformation(this->ArrayName.c_str(), this->GetAttributeType());
-        const auto fits = [&](int count) { return count == 0 || count == array->GetNumberOfComponents(); };
-        if (!array || !(components.empty() || std::any_of(components.begin(), components.end(), fits)))
+        if (!data) return NOT_IN_DOMAIN;
+        vtkPVDataSetAttributesInformation* points = data->GetPointDataInformation();
+        vtkPVArrayInformation* array = this->ArrayName.empty()
+                                           ? points->GetAttributeInformation(vtkDataSetAttributes::TCOORDS)
+                                           : points->GetArrayInformation(this->ArrayName.c_str());
+        const std::vector<int>& counts = this->ComponentCounts;
+        if (!array || std::find(counts.begin(), counts.end(), array->GetNumberOfComponents()) == counts.end())
             return NOT_IN_DOMAIN;
     }
     return IN_DOMAIN;

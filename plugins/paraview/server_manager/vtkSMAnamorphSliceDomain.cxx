@@ -16,7 +16,6 @@ void vtkSMAnamorphSliceDomain::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 int vtkSMAnamorphSliceDomain::IsInDomain(vtkSMProperty* property) {
-    if (!this->Superclass::IsInDomain(property)) return NOT_IN_DOMAIN;
     auto* inputs = vtkSMInputProperty::SafeDownCast(property);
     if (!inputs) return NOT_IN_DOMAIN;
     for (unsigned int i = 0; i < inputs->GetNumberOfUncheckedProxies(); ++i) {

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * @class   vtkSMAnamorphSliceDomain
- * @brief   Inputs that are a picture: images of one slice, with point arrays.
+ * @brief   Inputs that are a picture: images of one slice.
  *
- * A vtkSMInputArrayDomain that looks at the extent as well: menus do not offer filters of pictures for volumes.
+ * A vtkSMDomain that looks at the extent alone, so that menus do not offer filters of pictures for volumes. It is no vtkSMInputArrayDomain, of which they
+ * would say that an array is missing.
  */
 #ifndef vtkSMAnamorphSliceDomain_h
 #define vtkSMAnamorphSliceDomain_h
 
 #include "AnamorphServerManagerModule.h"  // for the export macro
-#include "vtkSMInputArrayDomain.h"
+#include "vtkSMDomain.h"
 
-class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphSliceDomain : public vtkSMInputArrayDomain {
+class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphSliceDomain : public vtkSMDomain {
   public:
     static vtkSMAnamorphSliceDomain* New();
-    vtkTypeMacro(vtkSMAnamorphSliceDomain, vtkSMInputArrayDomain);
+    vtkTypeMacro(vtkSMAnamorphSliceDomain, vtkSMDomain);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     int IsInDomain(vtkSMProperty* property) override;
