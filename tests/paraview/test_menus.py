@@ -85,6 +85,23 @@ warped = simple.AnamorphDeform(Input=levels)
 warped.UpdatePipeline()
 assert warped.GetDataInformation().GetNumberOfPoints() == levels.GetDataInformation().GetNumberOfPoints() > 0
 
+# What is made while a second output is the active one is of that, and so is a first bump.
+thrown = simple.AnamorphPanoramaProjection(Input=sphere, Position=[1.5, 0, 0], Direction=[-1, 0, 0], PanoramaWidth=256, PanoramaHeight=128, Tolerance=2)
+thrown.UpdatePipeline()
+rest = thrown.SMProxy.GetOutputPort(1)
+active = servermanager.ProxyManager().GetSelectionModel("ActiveSources")
+for name in ("AnamorphDeform", "AnamorphInbetween", "AnamorphPanoramaProjection"):
+    active.Select(rest, active.CLEAR_AND_SELECT)
+    active.SetCurrentProxy(rest, active.CLEAR_AND_SELECT)
+    made = getattr(simple, name)()
+    made.UpdatePipeline()
+    given = made.SMProxy.GetProperty("Input")
+    assert given.GetProxy(0).GetXMLName() == "AnamorphPanoramaProjection" and given.GetOutputPortForConnection(0) == 1, name
+    if name == "AnamorphDeform":
+        # The far half of a ball: in the middle of its plane lies one sheet, which the panorama has not reached.
+        assert list(made.Bumps[:2]) == [0, 0] and made.Bumps[6] > 0.1, list(made.Bumps)
+    Delete(made)
+
 # Pictures have one slice: filters of them are greyed out for volumes.
 slice_, ball = Wavelet(WholeExtent=[0, 9, 0, 9, 0, 0]), simple.Sphere()
 for source in (slice_, ball):
