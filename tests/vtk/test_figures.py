@@ -5,8 +5,9 @@ import subprocess
 import tempfile
 
 import anamorph
+import conformance
 from vtkmodules.vtkCommonCore import VTK_FLOAT, VTK_INT, VTK_UNSIGNED_CHAR
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkImagingCore import vtkImageFlip
 
 reader = anamorph.vtkAnamorphFigureReader()
@@ -146,3 +147,10 @@ with tempfile.TemporaryDirectory() as folder:
         upright, turned = (each.GetOutput().GetPointData().GetScalars() for each in (picture, flip))
         assert upright.GetDataType() == turned.GetDataType() == kind
         assert all(upright.GetTuple(i) == turned.GetTuple((159 - i // 200) * 200 + i % 200) for i in range(0, 32000, 97))
+
+# An image of bumps that changes over time tells its times, too.
+image = anamorph.vtkAnamorphFigureImage()
+image.SetInputDataObject(vtkPolyData())
+bumps = conformance.Source(conformance.picture, [0.5, 2.0])
+image.SetBumpConnection(bumps.GetOutputPort())
+assert conformance.steps_of(image) == [0.5, 2.0], conformance.steps_of(image)

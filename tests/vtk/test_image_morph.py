@@ -6,7 +6,7 @@ import math
 
 import anamorph
 import numpy as np
-from conformance import errors_of, pixels
+from conformance import Source, errors_of, pixels, steps_of, time_of
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
@@ -179,6 +179,16 @@ named = image(second)
 named.GetPointData().SetScalars(other)
 named.GetPointData().AddArray(image(second).GetPointData().GetScalars())
 assert (drawn(morph(None, named, CHAINS)) == by_lines).all()
+
+# Lines that move over time, while the images do not.
+over_time = Source(lambda time: lines_of(chains_of([np.add(line, 2 * time) for line in LINES_B])), [0, 1, 2])
+timed = morph(lines=CHAINS)
+timed.SetOtherLinesConnection(over_time.GetOutputPort())
+assert steps_of(timed) == [0, 1, 2], steps_of(timed)
+for time in (2, 0, 1):
+    timed.UpdateTimeStep(time)
+    assert time_of(timed.GetOutput()) == time
+    compare(pixels(timed.GetOutput())[:, :, 0], expected(LINES_A, np.array(LINES_B) + 2 * time, 0.5, 0.5))
 
 
 # What is refused, in words.

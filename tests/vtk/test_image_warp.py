@@ -5,7 +5,7 @@ import math
 
 import anamorph
 import numpy as np
-from conformance import errors_of, pixels
+from conformance import Source, errors_of, pixels, steps_of, time_of
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
@@ -190,6 +190,16 @@ at = centre + (6, -4)
 assert abs(picture[41, 65] + picture[41, 66] + picture[40, 65] + picture[40, 66] - 4 * value(*centre)) < 0.05, (at, picture[40:42, 65:67], value(*centre))
 deform.SetDeformation(0, 0.5, 0.5, 0.15, 0.2, 0, 0, 0)
 assert np.abs(drawn(dragged) - value(I, J)).max() < 1e-5, "and back"
+
+# A mesh that moves over time, while the image does not.
+over_time = Source(lambda time: moved(mesh, lambda i, j: (i + 5 * time, j)), [0, 1, 2])
+timed = warp(mesh)
+timed.SetMeshConnection(over_time.GetOutputPort())
+assert steps_of(timed) == [0, 1, 2], steps_of(timed)
+for time in (2, 0, 1):
+    timed.UpdateTimeStep(time)
+    assert time_of(timed.GetOutput()) == time
+    compare(pixels(timed.GetOutput())[:, :, 0], I - 5 * time, J)
 
 
 # What is refused, in words.

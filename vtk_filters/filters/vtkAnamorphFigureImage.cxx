@@ -19,6 +19,7 @@
 #include "figure_data.h"
 #include "figure_lines.h"
 #include "image_texture.h"
+#include "input_times.h"
 #include "property_names.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkFloatArray.h"
@@ -200,9 +201,10 @@ int vtkAnamorphFigureImage::FillOutputPortInformation(int, vtkInformation* infor
     return 1;
 }
 
-int vtkAnamorphFigureImage::RequestInformation(vtkInformation*, vtkInformationVector**,
+int vtkAnamorphFigureImage::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                                vtkInformationVector* outputs) {
     vtkInformation* output = outputs->GetInformationObject(0);
+    anamorph_vtk::tell_times({inputs, 2}, output);
     const int extent[6] = {0, this->ViewSize[0] - 1, 0, this->ViewSize[1] - 1, 0, 0};
     output->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
     const double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0};

@@ -14,6 +14,7 @@
 #include "execution.h"
 #include "feature_cells.h"
 #include "image_texture.h"
+#include "input_times.h"
 #include "text_of_file.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -104,6 +105,12 @@ vtkTypeBool vtkAnamorphImageMorph::ProcessRequest(vtkInformation* request, vtkIn
     return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
+int vtkAnamorphImageMorph::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+                                              vtkInformationVector* outputs) {
+    anamorph_vtk::tell_times({inputs, kPorts}, outputs->GetInformationObject(0));
+    return 1;
+}
+
 int vtkAnamorphImageMorph::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                vtkInformationVector*) {
     // Any part of the picture may come from anywhere, along any of the lines.
@@ -131,6 +138,7 @@ int vtkAnamorphImageMorph::RequestData(vtkInformation*, vtkInformationVector** i
         this,
         [&] {
             this->Draw(inputs, outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT()), output);
+            anamorph_vtk::hand_over_time({inputs, kPorts}, output);
         },
         {output});
 }

@@ -11,6 +11,7 @@
 #include "control_points.h"
 #include "execution.h"
 #include "image_texture.h"
+#include "input_times.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -29,11 +30,12 @@ using Executive = vtkStreamingDemandDrivenPipeline;
 
 constexpr anamorph::Filter kFilters[] = {anamorph::Filter::nearest, anamorph::Filter::bilinear,
                                          anamorph::Filter::bicubic, anamorph::Filter::antialias};
+constexpr int kPorts = 2;
 
 }  // namespace
 
 vtkAnamorphImageWarp::vtkAnamorphImageWarp() {
-    this->SetNumberOfInputPorts(2);
+    this->SetNumberOfInputPorts(kPorts);
     this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                  vtkDataSetAttributes::SCALARS);
 }
@@ -64,6 +66,12 @@ vtkTypeBool vtkAnamorphImageWarp::ProcessRequest(vtkInformation* request, vtkInf
     return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
+int vtkAnamorphImageWarp::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+                                             vtkInformationVector* outputs) {
+    anamorph_vtk::tell_times({inputs, kPorts}, outputs->GetInformationObject(0));
+    return 1;
+}
+
 int vtkAnamorphImageWarp::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                               vtkInformationVector*) {
     // Any part of the picture may come from anywhere.
@@ -88,6 +96,7 @@ int vtkAnamorphImageWarp::RequestData(vtkInformation*, vtkInformationVector** in
             this->Draw(vtkImageData::GetData(inputs[0]), this->GetInputArrayToProcess(0, inputs),
                        vtkPointSet::GetData(inputs[1]),
                        outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT()), output);
+            anamorph_vtk::hand_over_time({inputs, kPorts}, output);
         },
         {output});
 }

@@ -80,6 +80,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphImageWarp : public vtkImageAlgorithm {
     int FillInputPortInformation(int port, vtkInformation* info) override;
     vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
                                vtkInformationVector* outputs) override;
+    int RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+                           vtkInformationVector* outputs) override;
     int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
     int RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
