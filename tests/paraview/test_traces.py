@@ -237,7 +237,7 @@ def an_image_warped_by_a_mesh():
 
 def an_image_that_becomes_another():
     images = [Wavelet(registrationName=name, WholeExtent=[0, 20, 0, 20, 0, 0], Maximum=most) for name, most in (("image", 255), ("second", 99))]
-    lines = [Line(registrationName=name, Point1=[4, 5, 0], Point2=end, Resolution=1) for name, end in (("from", [15, 6, 0]), ("to", [12, 14, 0]))]
+    lines = [Line(registrationName=name, Point1=[4, 5, 0], Point2=end, Resolution=1) for name, end in (("here", [15, 6, 0]), ("there", [12, 14, 0]))]
     for source in images + lines:
         source.UpdatePipeline()
     SetActiveSource(images[0])
