@@ -110,6 +110,8 @@ for name in ("AnamorphRelief", "AnamorphDrape", "AnamorphPanoramaView", "Anamorp
     allowed = [offered(name, source) for source in (slice_, wavelet, ball)]
     assert allowed == [True, False, False], (name, allowed)
     assert missing(name, wavelet) == "vtkSMAnamorphSliceDomain", (name, missing(name, wavelet))
+for name in ("AnamorphFigureGeometry", "AnamorphNonlinearTexture", "AnamorphProjectionBake"):
+    assert missing(name, wavelet) == "vtkSMDataTypeDomain", (name, missing(name, wavelet))
 for name in ("AnamorphNonlinearTexture", "AnamorphProjectionBake"):
     assert missing(name, ball) == "vtkSMAnamorphArrayDomain", (name, missing(name, ball))
 
