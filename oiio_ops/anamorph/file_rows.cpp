@@ -2,6 +2,7 @@
 #include "anamorph/file_rows.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "anamorph/error.h"
 #include "anamorph/file_names.h"
@@ -62,7 +63,7 @@ void FileRows::need(int first, int end) {
     }
     if (first < have) {
         // Twice as many rows each time: a format without a way back begins anew.
-        first = std::max(0, std::min(first, have - (until - have)) / m_unit * m_unit);
+        first = above(std::max(0, std::min(first, have - (until - have)) / m_unit * m_unit));
         decode(first, have);
         m_first.store(first, std::memory_order_release);
     }
@@ -72,12 +73,27 @@ void FileRows::need(int first, int end) {
     }
 }
 
+int FileRows::above(int first) {
+    if (!m_input) {
+        m_input = m_open();
+        m_next = 0;
+        if (!m_input) return first;
+        ++open_files;
+    }
+    const std::string_view format = m_input->format_name();
+    return format == "png" || format == "jpeg" ? first / 2 / m_unit * m_unit : first;
+}
+
 void FileRows::decode(int first, int end) {
     if (!m_failure.empty()) throw Error(m_failure);
-    if (m_input) --open_files;
-    std::unique_ptr<OIIO::ImageInput> input = std::move(m_input);
+    std::unique_ptr<OIIO::ImageInput> input;
     // Not every reader finds its way back; one that has read no row can begin anywhere.
-    if (!input || (m_next > 0 && first != m_next)) input = m_open();
+    if (m_input && (m_next == 0 || first == m_next)) {
+        --open_files;
+        input = std::move(m_input);
+    } else {
+        input = m_open();
+    }
     if (!input) throw Error(OIIO::geterror());
     const bool is_there = input->seek_subimage(m_subimage, 0);
     const OIIO::ImageSpec& spec = input->spec();
@@ -100,8 +116,9 @@ void FileRows::decode(int first, int end) {
         m_failure = why.empty() ? "cannot be read" : why.substr(0, why.find('\n'));
         throw Error(m_failure);
     }
-    if (end == m_spec.height || open_files >= kMostOpen) return;
-    ++open_files;
+    // Of two readers the one that is farther down is kept: rows above it are there.
+    if (end == m_spec.height || (m_input ? m_next > end : open_files >= kMostOpen)) return;
+    if (!m_input) ++open_files;
     m_input = std::move(input);
     m_next = end;
 }

@@ -54,6 +54,10 @@ class FileRows {
         return m_first.load(std::memory_order_acquire) <= first &&
                end <= m_end.load(std::memory_order_acquire);
     }
+    /// Where decoding begins anew for rows from `first` on, above those that are there. A format that is passed through from its top
+    /// costs the same wherever its rows begin to be kept, and a view that goes up once more as much again: half of those above `first`
+    /// are kept as well.
+    int above(int first);
     void decode(int first, int end);
 
     const Opener m_open;

@@ -88,6 +88,23 @@ TEST_P(FileRowsOf, AreDecodedBackwardsInFewSteps) {
     EXPECT_LE(file.opened, 6);
 }
 
+TEST_P(FileRowsOf, GoOnWhereTheyEndedAfterAWayBack) {
+    FileRows some = rows();
+    some.need(600, 640);
+    some.need(520, 530);
+    EXPECT_EQ(file.opened, 2);
+    some.need(640, 700);
+    EXPECT_EQ(file.opened, 2) << "the reader that was farther down is kept";
+    // A view's upper edge is bent: what is passed through from its top goes up in one step.
+    if (const std::string format = GetParam(); format == "png" || format == "jpg") {
+        some.need(300, 310);
+        EXPECT_EQ(file.opened, 2);
+    }
+    for (int y = 520; y < 700; ++y) EXPECT_TRUE(equal(some, y)) << "row " << y;
+    EXPECT_FALSE(decoded(some, 100));
+    EXPECT_FALSE(decoded(some, 800));
+}
+
 TEST_P(FileRowsOf, BeyondThoseNeededStayUntouched) {
     FileRows some = rows();
     some.need(300, 340);
