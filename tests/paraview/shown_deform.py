@@ -106,6 +106,19 @@ class Shown:
         """A point of the view, pixels from its lower left, on the screen."""
         return self.left + at[0], self.bottom - at[1]
 
+    def wait_until_still(self, before):
+        """Until the screen shows something else than before, and nothing but a cursor changes."""
+        def changed(a, b):
+            return (a != b).any(axis=2).sum() > 300
+
+        last = [before]
+
+        def still():
+            last.append(self.screen.picture())
+            return changed(last[-1], before) and not changed(last[-1], last[-2])
+
+        self.wait_for(still)
+
     def click(self, x, y, control=False):
         """At a place in space, from the middle of the view."""
         size = self.state()["size"]

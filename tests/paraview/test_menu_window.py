@@ -56,13 +56,16 @@ def drive(shown):
     middle = shown.of_view([c / 2 for c in shown.state()["size"]])
     screen.move(*middle)
     screen.focus()
+    before = screen.picture()
     for symbol, down in ((CONTROL, True), (0x20, True), (0x20, False), (CONTROL, False)):
         screen.key(symbol, down)  # the quick launch: the menu's entries by name
-    time.sleep(2)
+    shown.wait_until_still(before)
+    before = screen.picture()
     screen.focus_top()
     for symbol in map(ord, "anamorph deform"):
         for down in (True, False):
             screen.key(symbol, down)
+    shown.wait_until_still(before)
     for down in (True, False):
         screen.key(0xff0d, down)
     shown.wait_for(lambda: shown.state()["made"] == 1 and shown.state()["shown"] == [False, True])
