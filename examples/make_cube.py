@@ -13,6 +13,7 @@ import OpenImageIO as oiio
 from whole_file import whole_file
 
 SIZE = 256
+FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"  # OpenImageIO 2.5 does not look for its name there
 FACES = {"px": ("right", "-x", (0.85, 0.35, 0.30)), "nx": ("left", "+x", (0.35, 0.70, 0.75)),
          "py": ("up", "+y", (0.45, 0.55, 0.90)), "ny": ("down", "-y", (0.60, 0.45, 0.30)),
          "pz": ("front", "+z", (0.40, 0.70, 0.40)), "nz": ("back", "-z", (0.70, 0.45, 0.70))}
@@ -33,9 +34,8 @@ def face(word, opengl, openexr, color):
     picture = oiio.ImageBuf(oiio.ImageSpec(SIZE, SIZE, 3, "uint8"))
     picture.set_pixels(oiio.ROI(), np.ascontiguousarray(np.minimum(pixels, 1)))
     for text, down, high in ((word, 150, 58), (f"{opengl}   OpenEXR {openexr}", 200, 24)):
-        box = oiio.ImageBufAlgo.text_size(text, high, "DejaVuSans")
-        if not oiio.ImageBufAlgo.render_text(picture, (SIZE - box.width) // 2 - box.xbegin, down, text, high, "DejaVuSans",
-                                             (1, 1, 1)):
+        box = oiio.ImageBufAlgo.text_size(text, high, FONT)
+        if not box.defined or not oiio.ImageBufAlgo.render_text(picture, (SIZE - box.width) // 2 - box.xbegin, down, text, high, FONT, (1, 1, 1)):
             sys.exit(f"make_cube.py: {picture.geterror()} (Debian package fonts-dejavu-core)")
     return picture
 

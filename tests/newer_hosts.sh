@@ -21,11 +21,14 @@ mkdir -p "$roots/$suite-ccache"
 common=(ca-certificates ccache cmake fonts-dejavu-core g++ gemmi-dev libboost-dev libfreetype-dev libgl-dev libgl1-mesa-dri libglew-dev
     libglm-dev libgmock-dev libgtest-dev libhwy-dev libopenmpi-dev libpugixml-dev libpython3-dev libx11-dev libxxhash-dev ninja-build
     nlohmann-json3-dev openmpi-bin python3-numpy xauth xvfb)
-if [ "$suite" != trixie ]; then common=("${common[@]/#gemmi-dev/libgemmi-dev}"); fi # as it is called from then on
 declare -A packages=(
     [vtk]="libvtk9-dev python3-vtk9"
     [paraview]="paraview-dev python3-paraview libdouble-conversion-dev libxtst6 qt6-base-dev"
 )
+if [ "$suite" != trixie ]; then
+    common=("${common[@]/#gemmi-dev/libgemmi-dev}") # as it is called from then on
+    packages[paraview]+=" libvtk9-dev"              # which ParaView is made with from then on, and paraview-dev does not bring
+fi
 declare -A names=([vtk]=VTK [paraview]=ParaView)
 # What is built: the modules, and for ParaView the plugin with what its tests ask for values. Their own tests in C++ are not.
 declare -A targets=(
