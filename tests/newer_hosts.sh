@@ -65,11 +65,7 @@ make_root() {
     mmdebstrap --quiet --variant=minbase --aptopt='APT::Install-Recommends "false"' --aptopt='Acquire::Check-Valid-Until "false"' \
         --dpkgopt=force-unsafe-io --include="$list" "$suite" "$root.new" || exit 1
     mv "$root.new" "$root"
-    # Their CMake packages look for Python modules by names without the interpreter's.
-    local module
-    find "$root/usr/lib" -path '*/dist-packages/*' \( -path '*/vtkmodules/*' -o -path '*/paraview/*' \) -name '*.cpython-*.so' | while read -r module; do
-        ln -sf "$(basename "$module")" "${module%%.cpython-*}.so"
-    done
+    tests/link_python_modules.sh "$root"
 }
 
 in_root() {

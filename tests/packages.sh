@@ -71,6 +71,7 @@ make_packages() {
         rm -rf "$root.new"
         # shellcheck disable=SC2046 # words
         clean_root "$root.new" ca-certificates ccache dpkg-dev file $(section build) $(section hosts) "${@:4}" >"$log" 2>&1 || fail "$log"
+        [ "$suite" = bookworm ] || tests/link_python_modules.sh "$root.new"
         mv "$root.new" "$root"
     fi
     bind "$PWD" "$root/anamorph"
@@ -193,13 +194,16 @@ paraview_commands="$deform"'
     mpiexec -n 2 pvbatch plugin.py
     pvpython classes.py'
 
+# ParaView's windows are made with Qt 6 from Debian 13 on.
+qt=()
+[ "$suite" = bookworm ] || qt=(qt6-base-dev)
 of_vtk='libvtk9-anamorph|python3-vtk9-anamorph|anamorph-view' of_paraview='paraview-anamorph|python3-paraview-anamorph'
 # shellcheck disable=SC2046 # words
 for host in "$@"; do
     case "$host" in
         oiio) make_packages oiio NONE OFF help2man mkdocs mkdocs-material ;;
         vtk) make_packages vtk VTK ON libvtk9-dev python3-vtk9 $(section vtk) ;;
-        paraview) make_packages paraview PARAVIEW OFF $(section paraview) ;;
+        paraview) make_packages paraview PARAVIEW OFF "${qt[@]}" $(section paraview) ;;
         *)
             echo "packages.sh: $host: must be oiio, vtk or paraview" >&2
             exit 1
