@@ -5,11 +5,10 @@
 #include <string>
 
 #include "anamorph/error.h"
-#include "anamorph/image/pyramid.h"
 #include "anamorph/morph/features_file.h"
 #include "anamorph/morph/morph.h"
 #include "anamorph/operation/solved.h"
-#include "attribute_fields.h"
+#include "drawn_image.h"
 #include "execution.h"
 #include "feature_cells.h"
 #include "image_texture.h"
@@ -22,7 +21,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphImageMorph);
@@ -30,10 +28,7 @@ vtkObjectFactoryNewMacro(vtkAnamorphImageMorph);
 namespace {
 
 using anamorph::Error;
-using Executive = vtkStreamingDemandDrivenPipeline;
 
-constexpr anamorph::Filter kFilters[] = {anamorph::Filter::nearest, anamorph::Filter::bilinear,
-                                         anamorph::Filter::bicubic, anamorph::Filter::antialias};
 constexpr int kImages = 2, kPorts = 4;
 
 /// The array of the second image that belongs to one of the first.
@@ -112,19 +107,7 @@ int vtkAnamorphImageMorph::RequestInformation(vtkInformation*, vtkInformationVec
 
 int vtkAnamorphImageMorph::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                vtkInformationVector*) {
-    // Any part of the picture may come from anywhere, along any of the lines.
-    for (int port = 0; port < kPorts; ++port) {
-        vtkInformation* info = inputs[port]->GetInformationObject(0);
-        if (!info) continue;
-        if (port < kImages) {
-            if (info->Has(Executive::WHOLE_EXTENT()))
-                info->Set(Executive::UPDATE_EXTENT(), info->Get(Executive::WHOLE_EXTENT()), 6);
-            continue;
-        }
-        info->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
-        info->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
-        info->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    }
+    anamorph_vtk::ask_for_all({inputs, kPorts});
     return 1;
 }
 
@@ -133,13 +116,15 @@ int vtkAnamorphImageMorph::RequestData(vtkInformation*, vtkInformationVector** i
     vtkImageData* output = vtkImageData::GetData(outputs);
     output->Initialize();
     this->MaxError = 0;
-    return anamorph_vtk::guarded(
-        this,
-        [&] {
-            this->Draw(inputs, outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT()), output);
-            anamorph_vtk::hand_over_time({inputs, kPorts}, output);
-        },
-        {output});
+    return anamorph_vtk::guarded(this,
+                                 [&] {
+                                     this->Draw(inputs,
+                                                outputs->GetInformationObject(0)->Get(
+                                                    vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
+                                                output);
+                                     anamorph_vtk::hand_over_time({inputs, kPorts}, output);
+                                 },
+                                 {output});
 }
 
 /// Draws the pixels of an extent.
@@ -168,7 +153,7 @@ void vtkAnamorphImageMorph::Draw(vtkInformationVector** inputs, const int* exten
 
     anamorph::MorphOptions options;
     options.tol = this->Tolerance;
-    options.filter = kFilters[this->Interpolation];
+    options.filter = anamorph_vtk::filter_of(this->Interpolation);
     options.t = this->Shape;
     if (!this->ColorFollowsShape) options.t_color = this->Color;
     options.weight_a = this->WeightA;
@@ -177,28 +162,7 @@ void vtkAnamorphImageMorph::Draw(vtkInformationVector** inputs, const int* exten
     const std::unique_ptr<const anamorph::SolvedPicture> picture =
         anamorph::solved(anamorph::morphed_picture(features, {a.size(), b.size()}, a.size(), options));
 
-    const int* whole = images[0]->GetExtent();
-    output->CopyStructure(images[0]);
-    output->SetExtent(extent[0], extent[1], extent[2], extent[3], whole[4], whole[5]);
-    const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(a.type()));
-    array->SetName(given->GetName());
-    array->SetNumberOfComponents(channels);
-    array->SetNumberOfTuples(output->GetNumberOfPoints());
-    output->GetPointData()->SetScalars(array);
-
-    anamorph_vtk::Execution execution(this);
-    const int alpha = anamorph_vtk::alpha_of(channels);
-    const anamorph::MemorySource base_a(a.view(), alpha), base_b(b.view(), alpha);
-    const anamorph::Pyramid source_a(base_a), source_b(base_b);
-    const anamorph::Box box{extent[0] - whole[0], whole[3] - extent[3], extent[1] + 1 - whole[0],
-                            whole[3] + 1 - extent[2]};
-    if (!picture->draw({&source_a, &source_b}, box,
-                       anamorph_vtk::turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)),
-                                                 a.view().type, box.width(), box.height(), channels),
-                       execution.stage(0.05, 0.95)))
-        throw Error("the images cannot be read");
-    for (const anamorph::Attribute& attribute : picture->reached(execution.stage(0.95, 1))) {
-        if (attribute.name.starts_with("anamorph:")) anamorph_vtk::add_field(attribute, output);
-        if (attribute.name == "anamorph:max_error") this->MaxError = std::get<double>(attribute.value);
-    }
+    const anamorph_vtk::ImageTexture* const textures[] = {&a, &b};
+    this->MaxError =
+        anamorph_vtk::draw_image(this, *picture, textures, images[0], given->GetName(), extent, output);
 }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphImageWarp.h"
 
-#include <iterator>
+#include <memory>
 
 #include "anamorph/error.h"
-#include "anamorph/image/pyramid.h"
 #include "anamorph/mesh/mesh_warp.h"
 #include "anamorph/operation/solved.h"
-#include "attribute_fields.h"
 #include "control_points.h"
+#include "drawn_image.h"
 #include "execution.h"
 #include "image_texture.h"
 #include "input_times.h"
@@ -17,19 +16,13 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphImageWarp);
 
 namespace {
 
-using Executive = vtkStreamingDemandDrivenPipeline;
-
-constexpr anamorph::Filter kFilters[] = {anamorph::Filter::nearest, anamorph::Filter::bilinear,
-                                         anamorph::Filter::bicubic, anamorph::Filter::antialias};
 constexpr int kPorts = 2;
 
 }  // namespace
@@ -74,14 +67,7 @@ int vtkAnamorphImageWarp::RequestInformation(vtkInformation*, vtkInformationVect
 
 int vtkAnamorphImageWarp::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                               vtkInformationVector*) {
-    // Any part of the picture may come from anywhere.
-    vtkInformation* image = inputs[0]->GetInformationObject(0);
-    if (image->Has(Executive::WHOLE_EXTENT()))
-        image->Set(Executive::UPDATE_EXTENT(), image->Get(Executive::WHOLE_EXTENT()), 6);
-    vtkInformation* mesh = inputs[1]->GetInformationObject(0);
-    mesh->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
-    mesh->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
-    mesh->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    anamorph_vtk::ask_for_all({inputs, kPorts});
     return 1;
 }
 
@@ -93,9 +79,11 @@ int vtkAnamorphImageWarp::RequestData(vtkInformation*, vtkInformationVector** in
     return anamorph_vtk::guarded(
         this,
         [&] {
-            this->Draw(vtkImageData::GetData(inputs[0]), this->GetInputArrayToProcess(0, inputs),
-                       vtkPointSet::GetData(inputs[1]),
-                       outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT()), output);
+            this->Draw(
+                vtkImageData::GetData(inputs[0]), this->GetInputArrayToProcess(0, inputs),
+                vtkPointSet::GetData(inputs[1]),
+                outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
+                output);
             anamorph_vtk::hand_over_time({inputs, kPorts}, output);
         },
         {output});
@@ -110,33 +98,13 @@ void vtkAnamorphImageWarp::Draw(vtkImageData* input, vtkDataArray* given, vtkPoi
     anamorph::MeshWarpOptions options;
     options.tol = this->Tolerance;
     options.amount = this->Amount;
-    options.filter = kFilters[this->Interpolation];
+    options.filter = anamorph_vtk::filter_of(this->Interpolation);
     anamorph::ControlMesh control = anamorph_vtk::control_mesh(mesh, input, whole);
     control.direction = this->Direction == PUSH ? anamorph::Direction::push : anamorph::Direction::pull;
     const std::unique_ptr<const anamorph::SolvedPicture> picture = anamorph::solved(
         anamorph::warped_picture({"the mesh", control}, image.size(), image.size(), options));
 
-    output->CopyStructure(input);
-    output->SetExtent(extent[0], extent[1], extent[2], extent[3], whole[4], whole[5]);
-    const int channels = image.view().channels;
-    const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(image.type()));
-    array->SetName(given->GetName());
-    array->SetNumberOfComponents(channels);
-    array->SetNumberOfTuples(output->GetNumberOfPoints());
-    output->GetPointData()->SetScalars(array);
-
-    anamorph_vtk::Execution execution(this);
-    const anamorph::MemorySource base(image.view(), anamorph_vtk::alpha_of(channels));
-    const anamorph::Pyramid source(base);
-    const anamorph::Box box{extent[0] - whole[0], whole[3] - extent[3], extent[1] + 1 - whole[0],
-                            whole[3] + 1 - extent[2]};
-    if (!picture->draw({&source}, box,
-                       anamorph_vtk::turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)),
-                                                 image.view().type, box.width(), box.height(), channels),
-                       execution.stage(0.05, 0.95)))
-        throw anamorph::Error("the image cannot be read");
-    for (const anamorph::Attribute& attribute : picture->reached(execution.stage(0.95, 1))) {
-        if (attribute.name.starts_with("anamorph:")) anamorph_vtk::add_field(attribute, output);
-        if (attribute.name == "anamorph:max_error") this->MaxError = std::get<double>(attribute.value);
-    }
+    const anamorph_vtk::ImageTexture* const textures[] = {&image};
+    this->MaxError =
+        anamorph_vtk::draw_image(this, *picture, textures, input, given->GetName(), extent, output);
 }
