@@ -26,8 +26,8 @@ declare -A packages=(
     [paraview]="paraview-dev python3-paraview libdouble-conversion-dev libxtst6 qt6-base-dev"
 )
 if [ "$suite" != trixie ]; then
-    common=("${common[@]/#gemmi-dev/libgemmi-dev}") # as it is called from then on
-    packages[paraview]+=" libvtk9-dev"              # which ParaView is made with from then on, and paraview-dev does not bring
+    common=("${common[@]/#gemmi-dev/libgemmi-dev}")     # as it is called from then on
+    packages[paraview]+=" libvtk9-dev libvtk9-qt-dev" # which ParaView is made with from then on, and paraview-dev does not bring
 fi
 declare -A names=([vtk]=VTK [paraview]=ParaView)
 # What is built: the modules, and for ParaView the plugin with what its tests ask for values. Their own tests in C++ are not.

@@ -98,9 +98,12 @@ struct OutputFile::Impl {
         constexpr int kTries = 100;
         handle_signals();
         const std::string base = place.filename().string().substr(0, kMostOfName);
+        // Writers may choose by it what they write.
+        const std::string extension = place.extension().string();
+        const std::string ending = ".part" + (extension.size() < 16 ? extension : "");
         for (int k = 0; k < kTries && file < 0; ++k) {
             beside = (place.parent_path() /
-                      ("." + base + "." + std::to_string(getpid()) + "." + std::to_string(k) + ".part"))
+                      ("." + base + "." + std::to_string(getpid()) + "." + std::to_string(k) + ending))
                          .string();
             file = open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
             if (file < 0 && errno != EEXIST) break;

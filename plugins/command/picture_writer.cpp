@@ -61,11 +61,15 @@ class OwnFile final : public OIIO::Filesystem::IOFile {
     const char* proxytype() const override { return "anamorph"; }
 };
 
-/// A writer, and its file where its format lets us open that: what the writer does not notice is then seen here.
+/// A writer, and its file where its format is one whose writer does not notice that it is cut off: that is then seen here. Other writers may
+/// need to read what they wrote, as that of TIFF does.
 class WatchedWriter {
   public:
     WatchedWriter(std::unique_ptr<OIIO::ImageOutput> out, const std::string& path) : m_out(std::move(out)) {
-        if (!m_out->supports("ioproxy") || !std::filesystem::is_regular_file(path)) return;
+        const std::string_view format = m_out->format_name();
+        if ((format != "png" && format != "jpeg") || !m_out->supports("ioproxy") ||
+            !std::filesystem::is_regular_file(path))
+            return;
         m_file = std::fopen(path.c_str(), "w+b");
         if (!m_file) return;
         m_proxy = std::make_unique<OwnFile>(m_file);

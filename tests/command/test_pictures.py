@@ -309,6 +309,22 @@ class Pictures(unittest.TestCase):
                 self.assertRegex(error.splitlines()[-1], rf"^anamorph: {name}: .*[a-z]{{4}}")  # libpng speaks before
                 self.assertFalse((self.folder / name).exists())
 
+    def test_photographs_and_what_they_say_of_themselves(self):
+        told = ["--attrib", "oiio:ColorSpace", "sRGB", "--attrib", "Make", "Maker"]
+        subprocess.run(["oiiotool", "noise.ppm", *told, "-o", "photo.jpg"], cwd=self.folder, check=True)
+        recipe = "photo.jpg.lens?lens=brown:k1=-0.1&fov=60"
+        self.ok("draw", recipe, "--part", "1/1", "-o", "p1")
+        for jobs in ("1", "2"):
+            for name in ("out.tif", "out.png", "out.ppm", "out.bmp", "out.tga", "out.jpg", "out.exr", "out.webp", "out.jp2"):
+                self.ok("draw", recipe, "-o", name, "--jobs", jobs)
+                info = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, capture_output=True, text=True, check=True).stdout
+                if name in ("out.tif", "out.jpg", "out.exr"):
+                    self.assertIn("Make: \"Maker\"", info, name)
+                if name in ("out.tif", "out.png", "out.ppm", "out.bmp", "out.tga", "out.jp2"):
+                    self.assertEqual(*self.hash(recipe, name), name)
+        self.ok("join", "p1", "-o", "joined.tif")
+        self.assertEqual(*self.hash(recipe, "joined.tif"))
+
     def test_a_source_that_breaks_while_rows_are_written(self):
         whole = noise_ppm(64, 2048)
         (self.folder / "short.ppm").write_bytes(whole[:len(whole) // 2])

@@ -132,6 +132,9 @@ TEST(Parameter, AKeyThatIsNearAnotherIsAskedAfter) {
                 HasSubstr("jaw=1: there is no such parameter, perhaps yaw is meant: must be one of"));
     EXPECT_THAT(error("PICH"), HasSubstr("perhaps pitch is meant"));
     EXPECT_THAT(error("outptu"), HasSubstr("perhaps output is meant"));
+    EXPECT_THAT(error("fvo"), HasSubstr("perhaps fov is meant"));
+    EXPECT_THAT(error("ywa"), HasSubstr("perhaps yaw is meant"));
+    EXPECT_THAT(error("vof"), testing::Not(HasSubstr("perhaps")));
     for (const std::string& far : {std::string("k"), std::string("elevation"), std::string(100000, 'y')})
         EXPECT_THAT(error(far), HasSubstr("there is no such parameter: must be one of"));
 }

@@ -10,15 +10,19 @@
 namespace anamorph {
 namespace {
 
-/// How many letters have to be put in, taken out or replaced to make one word of another (Levenshtein).
+/// How many letters have to be put in, taken out, replaced or swapped with the next to make one word of another (Damerau and Levenshtein,
+/// no letter twice).
 std::size_t edits(std::string_view from, std::string_view to) {
-    std::vector<std::size_t> row(to.size() + 1);
+    // Of beginnings of `from`, one letter longer each, to all beginnings of `to`.
+    std::vector<std::size_t> before, above, row(to.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
     for (std::size_t i = 1; i <= from.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i);
+        before = std::exchange(above, row);
+        row[0] = i;
         for (std::size_t j = 1; j <= to.size(); ++j) {
-            const std::size_t replaced = diagonal + (from[i - 1] != to[j - 1]);
-            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (from[i - 1] != to[j - 1])});
+            if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
         }
     }
     return row.back();

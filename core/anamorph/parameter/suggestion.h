@@ -7,8 +7,8 @@
 
 namespace anamorph {
 
-/// For a message: ", perhaps NAME is meant", of that of the words which is nearest by the letters that have to be put in, taken out or
-/// replaced (Levenshtein); empty where none is near, or the word is longer than 64 letters.
+/// For a message: ", perhaps NAME is meant", of that of the words which is nearest by the letters that have to be put in, taken out,
+/// replaced or swapped with the next; empty where none is near, or the word is longer than 64 letters.
 std::string perhaps(const std::string& word, const std::vector<std::string>& words);
 
 }  // namespace anamorph
