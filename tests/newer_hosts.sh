@@ -92,6 +92,7 @@ try_host() {
     bind "$roots/$suite-ccache" "$root/ccache"
     bind /proc "$root/proc"
     bind /dev/shm "$root/dev/shm"
+    bind /sys "$root/sys" ro # MPI reads what network there is
     in_root cmake -S /anamorph -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release -DANAMORPH_OIIO=OFF -DANAMORPH_COMMAND=OFF \
         -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" -DANAMORPH_TOOLKIT="${host^^}" -DANAMORPH_TESTS=ON -DPython3_EXECUTABLE=/usr/bin/python3 >"$log.configure.txt" 2>&1 ||
         stop "$log.configure.txt"
