@@ -147,7 +147,7 @@ void vtkAnamorphImageMorph::Draw(vtkInformationVector** inputs, const int* exten
         throw Error("FileName", this->FileName, "must not be given together with lines");
     const std::shared_ptr<anamorph::Features> features =
         file ? features_in_file(this->FileName) : anamorph_vtk::features_of(lines, images);
-    if (this->PinBorder > 0) features->pin_border(this->PinBorder);
+    if (this->PinBorder != 0) features->pin_border(this->PinBorder);
     // Nothing moves where the border alone is held.
     if (features->size() == 0 && features->border_weight() == 0) features->pin_border(1);
 
