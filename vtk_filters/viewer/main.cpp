@@ -83,10 +83,10 @@ int main(int argc, char** argv) {
         "A click on a hot spot goes where it leads.");
     app.add_option("PANORAMA", arguments.panorama, "An image, or a tour: a .json of panoramas and hot spots")
         ->required();
-    app.add_option("KEY=VALUE", arguments.options,
+    app.add_option("SETTING", arguments.options,
                    "What the image is, as in recipes of .pano (from, srcfov, srclens, srcyaw, tol ...) or, "
-                   "with circles, of "
-                   ".mosaic");
+                   "with circles, of .mosaic")
+        ->option_text("KEY=VALUE ...");
     app.add_option("--yaw", arguments.view.yaw, "Where to look: degrees to the right");
     app.add_option("--pitch", arguments.view.pitch, "Degrees up");
     app.add_option("--fov", arguments.view.fov, "Degrees that the window's width covers");
