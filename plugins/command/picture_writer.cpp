@@ -14,6 +14,7 @@
 #include <memory>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "anamorph/error.h"
 #include "anamorph/open_image.h"
@@ -27,31 +28,62 @@ using OIIO::ImageSpec;
 
 namespace {
 
-/// How a PNG is packed: "rle", "zip:4". OpenImageIO passes over what it does not know.
-void set_png_compression(const std::string& text, ImageSpec& spec) {
-    constexpr std::array<std::string_view, 5> kStrategies = {"zip", "filtered", "huffman", "rle", "fixed"};
+/// The words that OpenImageIO's writer of a format knows, and the numbers that may follow them: it passes over what it does not know.
+struct Packings {
+    std::string_view format;
+    std::vector<std::string_view> words;
+    int least, most;
+};
+const Packings* packings_of(std::string_view format) {
+    static const std::vector<Packings> all = {
+        {"png", {"zip", "filtered", "huffman", "rle", "fixed"}, 0, 9},
+        {"openexr", {"zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", "rle", "none"}, 0, 10000},
+        {"tiff", {"zip", "lzw", "packbits", "jpeg", "ccittrle", "none"}, 0, 100},
+        {"jpeg", {"jpeg"}, 1, 100},
+        {"webp", {"webp", "lossless"}, 0, 100},
+        {"heif", {"heic", "avif"}, 0, 100},
+    };
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Packings& p) { return p.format == format; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+/// "zip:4" as its word and its number, -1 where there is none. Throws Error where a format does not know it.
+std::pair<std::string, int> packing_of(const std::string& text, std::string_view format) {
+    const Packings* const known = packings_of(format);
+    if (!known)
+        throw Error("--compression", printable(text),
+                    "must not be given for a file of the format " + std::string(format));
     const std::size_t colon = std::min(text.find(':'), text.size());
-    const std::string name = text.substr(0, colon);
-    const bool known = std::find(kStrategies.begin(), kStrategies.end(), name) != kStrategies.end();
-    int level = -1;
+    const std::string word = text.substr(0, colon);
+    int number = -1;
     if (colon < text.size()) {
         const char *const first = text.data() + colon + 1, *const end = text.data() + text.size();
-        if (std::from_chars(first, end, level).ptr != end) level = -1;
+        if (std::from_chars(first, end, number).ptr != end) number = -1;
     }
-    if (!known || (colon < text.size() && (level < 0 || level > 9)))
-        throw Error(
-            "--compression", printable(text),
-            "must be zip, filtered, huffman, rle or fixed for a PNG, alone or with a level from 0 to 9, "
-            "such as zip:4");
-    spec.attribute("compression", name == "zip" ? "default" : name);
-    if (level >= 0) spec.attribute("png:compressionLevel", level);
+    const bool has_word = std::find(known->words.begin(), known->words.end(), word) != known->words.end();
+    const bool has_number = colon == text.size() || (known->least <= number && number <= known->most);
+    if (has_word && has_number) return {word, number};
+    std::string words;
+    for (const std::string_view each : known->words) words += (words.empty() ? "" : ", ") + std::string(each);
+    throw Error("--compression", printable(text),
+                "must be one of " + words + " for the format " + std::string(format) +
+                    ", alone or with a number from " + std::to_string(known->least) + " to " +
+                    std::to_string(known->most) + ", such as " + std::string(known->words[0]) + ":4");
 }
 
 void set_compression(const OIIO::ImageOutput& out, const PictureFile& file, ImageSpec& spec) {
-    if (std::string_view(out.format_name()) == "png")
-        set_png_compression(file.compression.value_or("rle"), spec);
-    else if (file.compression)
-        spec.attribute("compression", *file.compression);
+    const std::string_view format = out.format_name();
+    if (format != "png") {
+        if (file.compression) {
+            packing_of(*file.compression, format);
+            spec.attribute("compression", *file.compression);
+        }
+        return;
+    }
+    const auto [word, level] = packing_of(file.compression.value_or("rle"), format);
+    spec.attribute("compression", word == "zip" ? "default" : word);
+    if (level >= 0) spec.attribute("png:compressionLevel", level);
 }
 
 /// A file that is no plain one to OpenImageIO: into such libjpeg writes by itself, and ends the program where there is no room.
@@ -119,9 +151,9 @@ std::string why_not(const OIIO::ImageOutput& out, const std::string& file) {
 }
 
 /// Is the last row in a file? Not every writer of OpenImageIO sees that it is cut off.
-bool has_last_row(const std::string& path, const ImageSpec& spec) {
+bool has_last_row(const std::string& path, const std::string& format, const ImageSpec& spec) {
     const std::unique_ptr<OIIO::ImageInput> file = open_image(path);
-    if (!file) return !OIIO::ImageInput::create(path);  // not all that is written can be read
+    if (!file) return !OIIO::ImageInput::create(format);  // not all that is written can be read
     std::vector<std::byte> row(file->spec().scanline_bytes(true));
     return file->spec().height == spec.height &&
            file->read_native_scanline(0, 0, file->spec().y + spec.height - 1, 0, row.data());
@@ -165,6 +197,7 @@ void write_picture(const ImageSpec& picture, const PictureFile& file,
     std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(output);
     if (!out) throw Error(OIIO::geterror());
     set_compression(*out, file, spec);
+    const std::string format = out->format_name();
     OutputFile whole(output);
     const std::string path = whole.path();
     WatchedWriter writer(std::move(out), path);
@@ -173,7 +206,7 @@ void write_picture(const ImageSpec& picture, const PictureFile& file,
     if (!writer.out().close()) throw Error(printable(output) + ": " + why_not(writer.out(), output));
     const bool watched = writer.watches();
     // OpenImageIO's writer of EXR leaves the file of an environment open until it ends itself, for further levels.
-    if (!writer.close() || (!watched && !has_last_row(path, spec)))
+    if (!writer.close() || (!watched && !has_last_row(path, format, spec)))
         throw Error(printable(output) + ": " + why_cut_off(output));
     whole.close();
 }

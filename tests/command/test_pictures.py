@@ -324,6 +324,10 @@ class Pictures(unittest.TestCase):
                     self.assertEqual(*self.hash(recipe, name), name)
         self.ok("join", "p1", "-o", "joined.tif")
         self.assertEqual(*self.hash(recipe, "joined.tif"))
+        # Of TIFF with float OpenImageIO writes one that cannot be read.
+        subprocess.run(["oiiotool", "noise.ppm", "-d", "float", "-o", "float.tif"], cwd=self.folder, check=True)
+        self.refused("cannot be", "draw", "float.tif.lens?lens=brown:k1=-0.1&fov=60", "-o", "no.jp2")
+        self.assertFalse((self.folder / "no.jp2").exists())
 
     def test_a_source_that_breaks_while_rows_are_written(self):
         whole = noise_ppm(64, 2048)
@@ -350,8 +354,14 @@ class Pictures(unittest.TestCase):
         self.assertGreater(sizes["zip:0"], 900 * 700 * 3)
         self.assertLess(sizes["exr zip"], sizes["exr none"])
         for words in ("", "zap", "zip:", "zip:10", "zip:-1", "zip:4x", "rle:", ":4", "zip:4:4"):
-            self.refused("must be zip, filtered, huffman, rle or fixed", "draw", "sky.pano", "-o", "no.png", "--compression", words)
+            self.refused("must be one of zip, filtered, huffman, rle, fixed", "draw", "sky.pano", "-o", "no.png", "--compression", words)
             self.assertFalse((self.folder / "no.png").exists())
+        for name, words in (("no.exr", "pizz"), ("no.tif", "dwaa"), ("no.jpg", "jpeg:0"), ("no.webp", "lossles"), ("no.exr", "")):
+            self.refused("must be one of", "draw", "sky.pano", "-o", name, "--compression", words)
+            self.assertFalse((self.folder / name).exists())
+        self.refused("must not be given for a file of the format pnm", "draw", "sky.pano", "-o", "no.ppm", "--compression", "zip")
+        for name, words in (("yes.tif", "zip:9"), ("yes.tif", "lzw"), ("yes.exr", "dwaa:45"), ("yes.jpg", "jpeg:90"), ("yes.webp", "lossless")):
+            self.ok("draw", "sky.pano", "-o", name, "--compression", words)
         self.ok("draw", "sky.pano", "--part", "1/1", "-o", "p1")
         self.ok("join", "p1", "-o", "joined.png", "--compression", "zip:1")
         self.assertEqual((self.folder / "joined.png").stat().st_size, sizes["zip:1"])
