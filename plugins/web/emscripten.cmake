@@ -35,6 +35,6 @@ endif()
 
 # plugins/web/libm.cpp has these functions in place of musl's.
 set(ANAMORPH_WEB_LIBM "")
-foreach(function sin cos tan asin acos atan atan2 hypot)
+foreach(function sin cos tan asin acos atan atan2)
     list(APPEND ANAMORPH_WEB_LIBM -Wl,--wrap=${function})
 endforeach()

@@ -138,28 +138,4 @@ double __wrap_atan2(double y, double x) {
     return static_cast<double>(atan2(DoubleDouble(y), DoubleDouble(x)));
 }
 
-/// The root of the sum of squares, less the first order of what rounding left in it (Borges 2020, "An Improved Algorithm for hypot(a,b)",
-/// ACM TOMS 46).
-double __wrap_hypot(double x, double y) {
-    x = std::fabs(x), y = std::fabs(y);
-    if (std::isinf(x) || std::isinf(y)) return HUGE_VAL;
-    if (std::isnan(x) || std::isnan(y)) return x + y;
-    const double more = std::max(x, y), less = std::min(x, y);
-    if (less <= more * 0x1p-54) return more + less;
-    const double scale = more > 0x1p511 ? 0x1p-600 : less < 0x1p-459 ? 0x1p600 : 1;
-    const double a = more * scale, b = less * scale, root = std::sqrt(a * a + b * b);
-    // root^2 - a^2 - b^2, from the nearer one of both on.
-    double rest, far;
-    if (root <= 2 * b) {
-        const double beyond = root - b;
-        rest = a * (2 * beyond - a);
-        far = (beyond - 2 * (a - b)) * beyond;
-    } else {
-        const double beyond = root - a;
-        rest = 2 * beyond * (a - 2 * b);
-        far = (4 * beyond - b) * b + beyond * beyond;
-    }
-    return (root - (rest + far) / (2 * root)) / scale;
-}
-
 }  // extern "C"

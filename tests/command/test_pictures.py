@@ -314,14 +314,14 @@ class Pictures(unittest.TestCase):
         subprocess.run(["oiiotool", "noise.ppm", *told, "-o", "photo.jpg"], cwd=self.folder, check=True)
         recipe = "photo.jpg.lens?lens=brown:k1=-0.1&fov=60"
         self.ok("draw", recipe, "--part", "1/1", "-o", "p1")
+        keep_them = ("out.tif", "out.jpg", "out.exr")
+        exact = ("out.tif", "out.png", "out.ppm", "out.bmp", "out.tga", "out.jp2")
         for jobs in ("1", "2"):
-            for name in ("out.tif", "out.png", "out.ppm", "out.bmp", "out.tga", "out.jpg", "out.exr", "out.webp", "out.jp2"):
+            for name in (*exact, "out.jpg", "out.exr", "out.webp"):
                 self.ok("draw", recipe, "-o", name, "--jobs", jobs)
-                info = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, capture_output=True, text=True, check=True).stdout
-                if name in ("out.tif", "out.jpg", "out.exr"):
-                    self.assertIn("Make: \"Maker\"", info, name)
-                if name in ("out.tif", "out.png", "out.ppm", "out.bmp", "out.tga", "out.jp2"):
-                    self.assertEqual(*self.hash(recipe, name), name)
+            info = subprocess.run(["oiiotool", "--info", "-v", *keep_them], cwd=self.folder, capture_output=True, text=True, check=True).stdout
+            self.assertEqual(info.count("Make: \"Maker\""), len(keep_them), info)
+            self.assertEqual(len(set(self.hash(recipe, *exact))), 1, jobs)
         self.ok("join", "p1", "-o", "joined.tif")
         self.assertEqual(*self.hash(recipe, "joined.tif"))
         # Of TIFF with float OpenImageIO writes one that cannot be read.
@@ -338,17 +338,16 @@ class Pictures(unittest.TestCase):
             self.assertEqual(sorted(self.folder.iterdir()), before)
 
     def test_files_are_packed_as_asked(self):
-        hashes, sizes = set(self.hash("sky.pano")), {}
+        names, sizes = ["sky.pano"], {}
         for how in (None, "rle", "rle:9", "huffman", "filtered", "fixed", "zip:0", "zip:1", "zip:9", "zip"):
-            name = f"{how}.png".replace(":", "-")
-            self.ok("draw", "sky.pano", "-o", name, *(["--compression", how] if how else []))
-            hashes.update(self.hash(name))
-            sizes[how] = (self.folder / name).stat().st_size
+            names.append(f"{how}.png".replace(":", "-"))
+            self.ok("draw", "sky.pano", "-o", names[-1], *(["--compression", how] if how else []))
+            sizes[how] = (self.folder / names[-1]).stat().st_size
         for how in ("none", "piz", "zip"):
             name = f"{how}.exr"
             self.ok("draw", "sky.pano", "-o", name, "--compression", how)
             sizes["exr " + how] = (self.folder / name).stat().st_size
-        self.assertEqual(len(hashes), 1)
+        self.assertEqual(len(set(self.hash(*names))), 1)
         self.assertEqual(sizes[None], sizes["rle"])
         self.assertLess(sizes["zip"], sizes["zip:1"])
         self.assertGreater(sizes["zip:0"], 900 * 700 * 3)

@@ -330,6 +330,11 @@ const std::vector<std::string>& further_recipes() {
         "pano?to=orthographic&yaw=88&pitch=-16&roll=28&size=133&filter=antialias&tol=0.1",
         "pano?to=equirectangular&yaw=13&size=320x180&filter=nearest&tol=0.001",
         "pano?to=fisheye&fov=180&yaw=45&size=128&filter=nearest&tol=0.1",
+        // Corners of pixels on a rim, and points that lie exactly between two texels, by the last bit of a distance.
+        "pano?to=orthographic&yaw=150&size=28x96&filter=antialias&tol=0.001",
+        "pano?to=orthographic&fov=180&yaw=60&pitch=-20&size=100&filter=antialias&tol=0.001",
+        "pano?to=equirectangular&fov=360&yaw=121&size=160x90&filter=nearest&scheme=exact",
+        "pano?to=sinusoidal&yaw=52&pitch=45&size=160x90&filter=antialias",
     };
     return list;
 }

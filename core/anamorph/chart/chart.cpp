@@ -3,6 +3,7 @@
 
 #include "anamorph/chart/chart_formulas.h"
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
@@ -461,11 +462,11 @@ Branch Chart::branch_around(const Ray<double>& ray) const {
     if (m_counted == Counted::azimuth && m_lens) return b;
     if (m_counted == Counted::azimuth) {
         b.around = {r.x, r.z};
-        b.along = {r.y, std::hypot(r.x, r.z)};
+        b.along = {r.y, hypot(r.x, r.z)};
         b.axes *= glm::dmat3(b.around.cos, 0, -b.around.sin, 0, 1, 0, b.around.sin, 0, b.around.cos);
     } else if (m_counted == Counted::axis) {
         b.around = {r.y, r.x};
-        b.along = {std::hypot(r.x, r.y), r.z};
+        b.along = {hypot(r.x, r.y), r.z};
         b.axes *= glm::dmat3(b.around.cos, b.around.sin, 0, -b.around.sin, b.around.cos, 0, 0, 0, 1);
     }
     return b;

@@ -7,6 +7,7 @@
 
 #include "anamorph/chart/lens_table.h"
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -84,8 +85,8 @@ double least_stretch(const LensTerms& lens, const Interval& t) {
 /// How much the part that is not radial stretches the most, up to t: its slope is 2 (m.u) + 2 (u m^T + m u^T), and
 /// 2 (a + 2 b r^2) u^T of a prism.
 double most_tangential(const LensTerms& lens, double t) {
-    const double r = std::sqrt(t), a = std::hypot(lens.ax, lens.ay), b = std::hypot(lens.bx, lens.by);
-    return (6 * std::hypot(lens.mx, lens.my) * r + (2 * a + 4 * b * t) * r) * (1 + 8 * interval_detail::kUlp);
+    const double r = std::sqrt(t), a = hypot(lens.ax, lens.ay), b = hypot(lens.bx, lens.by);
+    return (6 * hypot(lens.mx, lens.my) * r + (2 * a + 4 * b * t) * r) * (1 + 8 * interval_detail::kUlp);
 }
 
 }  // namespace
@@ -391,8 +392,8 @@ bool Lens::set_ends(double corner) {
     const double argument = kLess * (terms.in_radius ? at : std::sqrt(at));
     double value = kLess * (terms.in_radius ? terms.value_end : std::sqrt(terms.value_end));
     // Wherever |u| is the end's, |F| is at least that less (3 |m| + |a| + |b| |u|^2) |u|^2.
-    value -= (1 + 0x1p-40) * 3 * std::hypot(terms.mx, terms.my) * argument * argument;
-    const double a = std::hypot(terms.ax, terms.ay), b = std::hypot(terms.bx, terms.by);
+    value -= (1 + 0x1p-40) * 3 * hypot(terms.mx, terms.my) * argument * argument;
+    const double a = hypot(terms.ax, terms.ay), b = hypot(terms.bx, terms.by);
     value -= (1 + 0x1p-40) * (a + b * argument * argument) * argument * argument;
     terms.ideal_end = terms.to_observed ? argument : value;
     terms.observed_end = terms.to_observed ? value : argument;

@@ -10,6 +10,7 @@
 #include <queue>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/interval.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -202,7 +203,7 @@ glm::dvec2 PlaneWarp::residual(glm::dvec2 s, glm::dvec2 target, double share, Di
 
 bool PlaneWarp::solve(glm::dvec2 target, double share, glm::dvec2& s) const {
     const double unit_u = glm::length(m_plane.axis_u()), unit_v = glm::length(m_plane.axis_v());
-    const auto size = [&](glm::dvec2 r) { return std::hypot(r.x * unit_u, r.y * unit_v); };
+    const auto size = [&](glm::dvec2 r) { return hypot(r.x * unit_u, r.y * unit_v); };
     const double scale = size(target) + size(s);
     DisplacementJet jet;
     glm::dvec2 rest = residual(s, target, share, jet);

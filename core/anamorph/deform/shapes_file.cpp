@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/gltf_buffer.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
@@ -60,7 +61,7 @@ double distance(const std::vector<Three>& points, const std::vector<float>& base
             const double sum = static_cast<double>(base[k]) + (offsets.empty() ? 0 : offsets[k]);
             off[c] = static_cast<double>(static_cast<float>(sum)) - points[i][c];
         }
-        largest = std::max(largest, std::hypot(off[0], off[1], off[2]));
+        largest = std::max(largest, hypot(off[0], off[1], off[2]));
     }
     return largest;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 
 namespace anamorph {
 
@@ -228,7 +229,7 @@ class PushedSheets::Cell {
         // Of z: the parameters s and t round, and the map in double errs; the iteration is a contraction.
         const double noise = (inverse.norm() * rounding + 0x1p-51 * (1 + 1 / std::min(s.half, t.half))) /
                              (1 - Sheet::kContraction);
-        const double diameter = 2 * std::hypot(s.half * width(), t.half * height());
+        const double diameter = 2 * hypot(s.half * width(), t.half * height());
         Sheet sheet = fold(s, t);
         sheet.fold = false;
         const Point<double> middle = source(s.middle, t.middle);
@@ -417,7 +418,7 @@ double PushedSheets::precise_error(const Interval& x, const Interval& y) const {
             sheet.to_parameters.norm() * std::max(f.x.error, f.y.error) + 8 * R::kUnit * size / thin;
         const double first = 1.5 * sheet.noise + 8 * 0x1p-53 * size / thin;
         const double off = chord / (1 - Sheet::kContraction) + std::ldexp(first, -2 * kPreciseSteps);
-        most = std::max(most, 2.1 * std::hypot(w, h) * off);
+        most = std::max(most, 2.1 * hypot(w, h) * off);
     });
     // The point is kept in double.
     return most + 0x1p-53 * size;

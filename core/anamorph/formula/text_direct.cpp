@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "anamorph/formula/text_map.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/near_pixels.h"
 
 namespace anamorph {
@@ -59,7 +60,7 @@ NearReading TextMap::direct(double x, double y, double half_width, double half_h
     const Point<NearBound<Real>> p = source_point(pixels.x, pixels.y);
     WrittenBase::to = nullptr;
     return {{p.x.base.value, p.y.base.value},
-            std::hypot(drawn_error(p.x, 0), drawn_error(p.y, 0)) * rounded_detail::kUp,
+            hypot(drawn_error(p.x, 0), drawn_error(p.y, 0)) * rounded_detail::kUp,
             kReadInSteps};
 }
 

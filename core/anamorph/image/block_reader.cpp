@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "anamorph/image/pixel.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 
 namespace anamorph {
@@ -58,7 +59,7 @@ bool shares_footprint(const BlockPolynomial& p, const Block& block) {
             }
     const double hx = half(block.box.width()), hy = half(block.box.height());
     const auto steady = [](double x, double y, double off_x, double off_y) {
-        const double length = std::hypot(x, y), off = std::hypot(off_x, off_y);
+        const double length = hypot(x, y), off = hypot(off_x, off_y);
         return off <= std::max(kFootprintOff, kFootprintShare * length) || length + off <= 1;
     };
     return steady(p.c[0][1] / hx, p.c[0][5] / hx, along_s[0] / hx, along_s[1] / hx) &&
@@ -73,8 +74,8 @@ bool shares_footprint(const BlockPolynomial& p, const Block& block) {
 constexpr int kRays = 8;
 int parts_of_pixel(const Jacobian& middle, const std::array<Jacobian, 4>& corners) {
     const auto lengths = [](const Jacobian& j) {
-        return std::array{std::hypot(j.x_i, j.y_i), std::hypot(j.x_j, j.y_j),
-                          std::hypot(j.x_i + j.x_j, j.y_i + j.y_j), std::hypot(j.x_i - j.x_j, j.y_i - j.y_j)};
+        return std::array{hypot(j.x_i, j.y_i), hypot(j.x_j, j.y_j), hypot(j.x_i + j.x_j, j.y_i + j.y_j),
+                          hypot(j.x_i - j.x_j, j.y_i - j.y_j)};
     };
     const std::array<double, 4> here = lengths(middle);
     if (!std::all_of(here.begin(), here.end(), [](double l) { return std::isfinite(l); })) return kRays;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph {
 namespace {
 
@@ -41,8 +43,8 @@ struct Side {
     int taps;
 
     Side(double x, double y, const std::array<double, 2>& scale)
-        : texels(std::hypot(x * scale[0], y * scale[1])),
-          energy(texels > 0 ? std::hypot(x, y) / texels * box_energy(std::hypot(x, y)) : 1),
+        : texels(hypot(x * scale[0], y * scale[1])),
+          energy(texels > 0 ? hypot(x, y) / texels * box_energy(hypot(x, y)) : 1),
           taps(taps_for(energy)) {}
     /// Fewer taps than the energy asks for are spread evenly over the side.
     double spacing(int used) const { return used < taps ? texels / used : spacing_for(taps, energy); }
@@ -51,14 +53,14 @@ struct Side {
 /// The smaller singular value.
 double least_stretch(const Jacobian& j) {
     // Half the sum and half the difference of the singular values.
-    const double sum = 0.5 * std::hypot(j.x_i + j.y_j, j.y_i - j.x_j);
-    const double difference = 0.5 * std::hypot(j.x_i - j.y_j, j.y_i + j.x_j);
+    const double sum = 0.5 * hypot(j.x_i + j.y_j, j.y_i - j.x_j);
+    const double difference = 0.5 * hypot(j.x_i - j.y_j, j.y_i + j.x_j);
     return std::fabs(sum - difference);
 }
 
 /// The unit vector along (x, y), or none.
 Point<double> direction(double x, double y) {
-    const double length = std::hypot(x, y);
+    const double length = hypot(x, y);
     return length > 0 ? Point<double>{x / length, y / length} : Point<double>{0, 0};
 }
 

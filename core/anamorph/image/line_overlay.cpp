@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph {
 namespace {
 
@@ -41,7 +43,7 @@ struct Cover {
     }
     void add(const Point<double>& from, const Point<double>& to) {
         const Point<double> e{to.x - from.x, to.y - from.y};
-        const double length = std::hypot(e.x, e.y);
+        const double length = hypot(e.x, e.y);
         if (length == 0) return;
         const Box reach = reach_of_line(least(from, to), greatest(from, to), box);
         for (int y = reach.y0; y < reach.y1; ++y)

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph {
 namespace {
 
@@ -58,7 +60,7 @@ class PointRow {
 bool is_at_both_ends(const Chart& source, const Point<double>& at, const Point<double>& mirrored) {
     constexpr double kSame = 1e-9;
     const Ray<double> a = source.ray(at.x, at.y), b = source.ray(mirrored.x, mirrored.y);
-    return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) <= kSame * std::hypot(a.x, a.y, a.z);
+    return hypot(a.x - b.x, a.y - b.y, a.z - b.z) <= kSame * hypot(a.x, a.y, a.z);
 }
 
 /// The distance from the truth at (x, y); the source's x is counted around one with azimuths.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph::machine {
 namespace {
 
@@ -50,7 +52,7 @@ Point<double> MachineMap::source_point(const UnitCoordinates& coordinates) const
 double MachineMap::distance(const Point<double>& used, const Point<double>& exact) const {
     double across = used.x - exact.x;
     if (m_turn < HUGE_VAL) across -= std::round(across / m_turn) * m_turn;
-    return std::hypot(across, used.y - exact.y);
+    return hypot(across, used.y - exact.y);
 }
 
 void MachineMap::plan(const Box& box, int piece, Blocks& blocks) const {

@@ -7,6 +7,7 @@
 
 #include "anamorph/mesh/hermite.h"
 #include "anamorph/mesh/window_map.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/left_out.h"
 #include "anamorph/plan/block_writer.h"
 
@@ -126,7 +127,7 @@ class InversePlan::CellParts {
         const double noise =
             (y.norm() * m_exact + 0x1p-51 * (1 + 1 / std::min(s.half, t.half))) / (1 - Sheet::kContraction);
         const double hair = std::max(Sheet::kHair, 4 * noise);
-        const double diameter = 2 * std::hypot(s.half * width(), t.half * height());
+        const double diameter = 2 * hypot(s.half * width(), t.half * height());
         const double place = std::max(std::fabs(m_cell.x0), std::fabs(m_cell.x1)) +
                              std::max(std::fabs(m_cell.y0), std::fabs(m_cell.y1));
         Sheet sheet = fold(s, t);
@@ -307,7 +308,7 @@ class InverseSubdivider {
             const LocalInverse inverse = invert();
             if (inverse.error < HUGE_VAL) {
                 const EconomizedBicubic x(inverse.x), y(inverse.y);
-                if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + inverse.error) ||
+                if (m_writer.polynomial(box, x.c, y.c, hypot(x.dropped, y.dropped) + inverse.error) ||
                     bicubic(box, inverse, x.c, y.c))
                     return;
                 miss = {inverse.error, x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t};
@@ -436,7 +437,7 @@ class InverseSubdivider {
         }
         const Point<double>&m = middle.at, &span = middle.span;
         // And of what follows, to a quadratic: 24 roundings of point and spans.
-        result.error = std::hypot(span.x, span.y) *
+        result.error = hypot(span.x, span.y) *
                            inverse_error(middle, norm(third[0], third[1]), norm(fourth[0], fourth[1])) +
                        24 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
         set_inverse(middle, third, fourth, result);
@@ -534,7 +535,7 @@ class InverseSubdivider {
             to[2][0] += s4;
             to[0][2] += t4;
         }
-        result.error += std::hypot(dropped[0], dropped[1]);
+        result.error += hypot(dropped[0], dropped[1]);
     }
 
     /// A cell's map in powers of source pixels from a point.
@@ -710,7 +711,7 @@ class InverseWindows final : public WindowSource {
             cubic.cx[k] = inverse.x[WindowCubic::kAcross[k]][WindowCubic::kDown[k]];
             cubic.cy[k] = inverse.y[WindowCubic::kAcross[k]][WindowCubic::kDown[k]];
         }
-        const double error = (inverse.error + std::hypot(dropped(inverse.x), dropped(inverse.y)) +
+        const double error = (inverse.error + hypot(dropped(inverse.x), dropped(inverse.y)) +
                               1.4143 * 0x1p-47 * cubic.size()) *
                              rounded_detail::kUp;
         if (!(error <= most)) return cubic;
@@ -733,9 +734,8 @@ class InverseWindows final : public WindowSource {
             if (sheet.fold) return;
             error = std::max(error, sheet.error);
             const MeshCell& cell = m_plan->cells()[static_cast<std::size_t>(sheet.cell)];
-            slope =
-                std::max(slope, std::hypot(sheet.hs * (cell.x1 - cell.x0), sheet.ht * (cell.y1 - cell.y0)) *
-                                    sheet.to_parameters.norm() / (1 - Sheet::kContraction));
+            slope = std::max(slope, hypot(sheet.hs * (cell.x1 - cell.x0), sheet.ht * (cell.y1 - cell.y0)) *
+                                        sheet.to_parameters.norm() / (1 - Sheet::kContraction));
         });
         if (!any) return 0;
         if (is_point) return on_fold ? m_plan->preimages(x.lo, y.lo).error : error;

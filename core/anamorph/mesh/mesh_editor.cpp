@@ -10,6 +10,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/mesh/cells.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 
 namespace anamorph {
@@ -117,7 +118,7 @@ std::vector<std::vector<Point<double>>> MeshEditor::edges() const {
 std::optional<MeshEditor::Place> MeshEditor::point_near(const Point<double>& at, double within) const {
     std::optional<Place> nearest;
     for (const ControlPoint& point : m_points) {
-        const double far = std::hypot(point.at.x - at.x, point.at.y - at.y);
+        const double far = hypot(point.at.x - at.x, point.at.y - at.y);
         if (point.is_fixed || !(far <= within)) continue;
         within = far;
         nearest = point.place;

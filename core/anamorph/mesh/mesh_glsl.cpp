@@ -8,6 +8,7 @@
 #include "anamorph/error.h"
 #include "anamorph/mesh/cells.h"
 #include "anamorph/number/glsl_number.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/rounded.h"
 
 namespace anamorph {
@@ -122,7 +123,7 @@ double mesh_glsl_bound(const Mesh& mesh) {
     }
     const double whole =
         exact_rounding_by_cells(mesh, {0, 0, double(mesh.from().width), double(mesh.from().height)});
-    return std::hypot(most.x, most.y) * (1 + 0x1p-50) + whole;
+    return hypot(most.x, most.y) * (1 + 0x1p-50) + whole;
 }
 
 }  // namespace anamorph

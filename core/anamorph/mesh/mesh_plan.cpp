@@ -13,6 +13,7 @@
 #include "anamorph/mesh/mesh_residual.h"
 #include "anamorph/mesh/mesh_windows.h"
 #include "anamorph/mesh/window_map.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 #include "anamorph/plan/map_link.h"
 
@@ -124,7 +125,7 @@ class CellSubdivider {
         const Bicubic f = form.on(box);
         const EconomizedBicubic x(f.x), y(f.y);
         if (m_scheme == WarpScheme::automatic &&
-            m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding))
+            m_writer.polynomial(box, x.c, y.c, hypot(x.dropped, y.dropped) + form.rounding))
             return;
         if (m_writer.bicubic(box, f.x, f.y, x.c, y.c, form.rounding)) return;
         m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(form, b); });
@@ -142,7 +143,7 @@ class CellSubdivider {
         const double x = 0.5 * b.width() * scale.x + 1.29 * (rough.high.x - rough.low.x) + 1,
                      y = 0.5 * b.height() * scale.y + 1.29 * (rough.high.y - rough.low.y) + 1;
         const double rounding = with_rounding(m_mesh, rough, all, kExactTerms);
-        if (!m_writer.computed(b, middle, std::hypot(x, y) * (3.03 * 0x1p-24) + rounding))
+        if (!m_writer.computed(b, middle, hypot(x, y) * (3.03 * 0x1p-24) + rounding))
             m_writer.exact(b, rounding);
     }
 

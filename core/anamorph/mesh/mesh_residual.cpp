@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph {
 namespace {
 
@@ -70,14 +72,14 @@ ResidualPatch::ResidualPatch(const Patch& patch) {
             curvature_x += std::fabs(element.x) * curvature_of(kElements[k]);
             curvature_y += std::fabs(element.y) * curvature_of(kElements[k]);
         }
-        plane.sum = std::hypot(sum_x, sum_y);
-        plane.curvature = std::hypot(curvature_x, curvature_y);
+        plane.sum = hypot(sum_x, sum_y);
+        plane.curvature = hypot(curvature_x, curvature_y);
     }
 }
 
 double ResidualPatch::float_rounding(const Bicubic& block) const {
-    const double offset = std::hypot(sum_of_magnitudes(block.x) - std::fabs(block.x[0][0]) + 1,
-                                     sum_of_magnitudes(block.y) - std::fabs(block.y[0][0]) + 1);
+    const double offset = hypot(sum_of_magnitudes(block.x) - std::fabs(block.x[0][0]) + 1,
+                                sum_of_magnitudes(block.y) - std::fabs(block.y[0][0]) + 1);
     return kUnit * (kTermRoundings * std::max(triangles[0].sum, triangles[1].sum) + 2 * offset);
 }
 

@@ -14,6 +14,7 @@
 #include "anamorph/mesh/folds.h"
 #include "anamorph/mesh/hermite.h"
 #include "anamorph/mesh/window_map.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 #include "anamorph/plan/map_link.h"
 
@@ -236,13 +237,13 @@ class TriangleSubdivider {
         double step = 0, rounding = 0;
         for (const Met& other : m_met) {
             const Bicubic there = restricted(difference(other.f, f), other.s, other.t);
-            raise(step, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)));
+            raise(step, hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)));
             raise(rounding, other.rounding);
         }
         const EconomizedBicubic x(f.x), y(f.y);
         // The polynomial's own rounding, and that of what it stands for elsewhere.
         rounding += m_met[0].rounding;
-        return m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding) ||
+        return m_writer.polynomial(box, x.c, y.c, hypot(x.dropped, y.dropped) + step + rounding) ||
                m_writer.bicubic(box, f.x, f.y, x.c, y.c, step + rounding);
     }
 
@@ -256,9 +257,8 @@ class TriangleSubdivider {
             f.x[0][0] -= std::floor(middle.x);
             f.y[0][0] -= std::floor(middle.y);
             const Bicubic there = restricted(f, met.s, met.t);
-            raise(error,
-                  std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)) * (3.03 * 0x1p-24) +
-                      met.rounding);
+            raise(error, hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)) * (3.03 * 0x1p-24) +
+                             met.rounding);
         }
         if (!m_writer.computed(box, middle, error)) return false;
         if (m_records.near.size() + m_met.size() > Pieces::kMost) return true;
@@ -419,7 +419,7 @@ class TriangleMap {
             const CubicTriangle::Reach reach = t.reach(all);
             const auto inside = [](double reached) { return std::min(reached, 1.0); };
             const CubicTriangle::Terms terms = t.terms({inside(reach.u), inside(reach.v), inside(reach.w)});
-            const double turn = std::hypot(t.a[0], t.b[0]) + std::hypot(t.a[1], t.b[1]);
+            const double turn = hypot(t.a[0], t.b[0]) + hypot(t.a[1], t.b[1]);
             const double steep = 1.01 * 1.4143 * terms.slope * turn;
             if (!(steep <= slope)) slope = steep;
         });

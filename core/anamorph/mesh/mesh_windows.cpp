@@ -6,6 +6,7 @@
 
 #include "anamorph/mesh/cells.h"
 #include "anamorph/mesh/hermite.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 
 namespace anamorph {
@@ -111,7 +112,7 @@ WindowCubic MeshWindows::cubic_over(const Box& window, double most) const {
         const bool is_in = cell.x0 >= all.x0 && cell.y0 >= all.y0 && cell.x1 <= all.x1 && cell.y1 <= all.y1;
         const Point<double> off = is_in ? distance_by_corners(*m_mesh, cell, patch, cubic)
                                         : distance_in_part(*m_mesh, cell, patch, cubic);
-        const double here = std::hypot(off.x, off.y) + rounded + double_rounding(*m_mesh, cell, patch);
+        const double here = hypot(off.x, off.y) + rounded + double_rounding(*m_mesh, cell, patch);
         // Written so that what is no number is too much.
         if (!(here <= error)) error = here;
     });
@@ -146,20 +147,20 @@ void MeshWindows::each_part(const Interval& x, const Interval& y, const Body& bo
 double MeshWindows::exact_error(const Interval& x, const Interval& y, double off) const {
     if (off == 0) return exact_rounding_by_cells(*m_mesh, with_neighbors({x.lo, y.lo, x.hi, y.hi}));
     double rounding = 0, slope = 0;
-    each_part(
-        x, y, [&](const MeshCell& cell, const Patch& patch, const Part& s, const Part& t, const Bicubic& f) {
-            const double here = exact_rounding(*m_mesh, cell, patch);
-            if (!(here <= rounding)) rounding = here;
-            double by_s[2] = {}, by_t[2] = {};
-            for (int i = 0; i < 4; ++i)
-                for (int j = 0; j < 4; ++j) {
-                    by_s[0] += i * std::fabs(f.x[i][j]), by_s[1] += i * std::fabs(f.y[i][j]);
-                    by_t[0] += j * std::fabs(f.x[i][j]), by_t[1] += j * std::fabs(f.y[i][j]);
-                }
-            const double steep = std::hypot(std::hypot(by_s[0], by_s[1]) / (s.half * (cell.x1 - cell.x0)),
-                                            std::hypot(by_t[0], by_t[1]) / (t.half * (cell.y1 - cell.y0)));
-            if (!(steep <= slope)) slope = steep;
-        });
+    each_part(x, y,
+              [&](const MeshCell& cell, const Patch& patch, const Part& s, const Part& t, const Bicubic& f) {
+                  const double here = exact_rounding(*m_mesh, cell, patch);
+                  if (!(here <= rounding)) rounding = here;
+                  double by_s[2] = {}, by_t[2] = {};
+                  for (int i = 0; i < 4; ++i)
+                      for (int j = 0; j < 4; ++j) {
+                          by_s[0] += i * std::fabs(f.x[i][j]), by_s[1] += i * std::fabs(f.y[i][j]);
+                          by_t[0] += j * std::fabs(f.x[i][j]), by_t[1] += j * std::fabs(f.y[i][j]);
+                      }
+                  const double steep = hypot(hypot(by_s[0], by_s[1]) / (s.half * (cell.x1 - cell.x0)),
+                                             hypot(by_t[0], by_t[1]) / (t.half * (cell.y1 - cell.y0)));
+                  if (!(steep <= slope)) slope = steep;
+              });
     return (rounding + slope * off) * rounded_detail::kUp;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 
 namespace anamorph {
@@ -62,8 +63,7 @@ WindowCubic StWindows::cubic_over(const Box& window, double most) const {
         return 1.5625 * (residual + m_lattice->rounding()) +
                0.0963 * cubed * (std::fabs(c[6]) + std::fabs(c[9])) + 0x1p-47 * size;
     };
-    const double error =
-        std::hypot(error_of(off_x, cubic.cx), error_of(off_y, cubic.cy)) * rounded_detail::kUp;
+    const double error = hypot(error_of(off_x, cubic.cx), error_of(off_y, cubic.cy)) * rounded_detail::kUp;
     if (!(error <= most)) return cubic;
     cubic.error = error;
     // Cells in which all four lines are samples of the window.

@@ -6,6 +6,7 @@
 
 #include "anamorph/mesh/sample_rows.h"
 #include "anamorph/mesh/st_windows.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block_writer.h"
 #include "anamorph/plan/map_link.h"
 
@@ -70,7 +71,7 @@ void StMapPlan::plan(const Box& box, int, Blocks& blocks) const {
         const Point<double> x = span(0, source.width, b.x0 * scale.x, b.x1 * scale.x),
                             y = span(1, source.height, b.y0 * scale.y, b.y1 * scale.y);
         // The offset from the base, which is rounded down, is rounded to float, and twice more where it is read.
-        const double offsets = std::hypot(x.y + 1, y.y + 1) * (3.03 * 0x1p-24);
+        const double offsets = hypot(x.y + 1, y.y + 1) * (3.03 * 0x1p-24);
         const bool has_holes = !(range.most() < HUGE_VAL);
         if (!(m_tol > 0 && !has_holes && writer.computed(b, {x.x, y.x}, offsets + in_double)))
             writer.exact(b, in_double);

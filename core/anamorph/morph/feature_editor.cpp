@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph {
 
 Point<double> FeatureEditor::at(const Place& place) const {
@@ -28,7 +30,7 @@ std::optional<FeatureEditor::Place> FeatureEditor::point_near(int shape, const P
     std::optional<Place> nearest;
     for (const Place& place : points(shape)) {
         const Point<double> p = at(place);
-        const double far = std::hypot(p.x - to.x, p.y - to.y);
+        const double far = hypot(p.x - to.x, p.y - to.y);
         if (!(far <= within)) continue;
         within = far;
         nearest = place;

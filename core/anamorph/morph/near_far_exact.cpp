@@ -66,6 +66,7 @@
 #include <cmath>
 
 #include "anamorph/morph/feature_rows.h"
+#include "anamorph/number/hypot.h"
 
 namespace anamorph {
 namespace {
@@ -189,7 +190,7 @@ class BoxBound {
     Parts bound(const Box& box, int shape) {
         const double x = 0.5 * (box.x0 + box.x1), y = 0.5 * (box.y0 + box.y1);
         // Of the pixels' centres.
-        const double radius = 0.5 * std::hypot(box.width() - 1, box.height() - 1);
+        const double radius = 0.5 * hypot(box.width() - 1, box.height() - 1);
         const Point<double> at = m_map(x, y, shape), scale = m_map.scale(shape);
         const Point<double> reference{at.x / scale.x - x, at.y / scale.y - y};
         double unit = HUGE_VAL;

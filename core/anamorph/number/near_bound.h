@@ -21,6 +21,7 @@ struct Heading;  // chart/projection/facts.h
 // Inlines an operation: as calls, operations would take twice as long.
 #define ANAMORPH_INLINE __attribute__((always_inline)) inline
 #endif
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/near.h"
 
 // --- rests ---
@@ -176,8 +177,8 @@ RestBound<Real> any_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const double left = x.middle - x.radius, top = y.middle - y.radius, bottom = y.middle + y.radius;
     if (!(left > x.error || top > y.error || -bottom > y.error)) return RestBound<Real>::unbounded();
     // Points that are off by less than their distance from the centre are seen from there within the quotient.
-    const double off = std::hypot(x.error, y.error);
-    const double nearest = std::hypot(std::max(left, 0.0), std::max({top, -bottom, 0.0}));
+    const double off = hypot(x.error, y.error);
+    const double nearest = hypot(std::max(left, 0.0), std::max({top, -bottom, 0.0}));
     const double apart = nearest * (1 - 0x1p-50) - off;
     if (!(apart > 0)) return RestBound<Real>::unbounded();
     const double middle = y.middle == 0 && x.middle > 0 ? 0 : std::atan2(y.middle, x.middle);

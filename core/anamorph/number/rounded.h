@@ -24,6 +24,7 @@
 
 #include "anamorph/number/arithmetic.h"
 #include "anamorph/number/double_double.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/interval.h"
 
 namespace anamorph {
@@ -283,7 +284,7 @@ Rounded<Real> atan2(const Rounded<Real>& y, const Rounded<Real>& x) {
     const double low = rounded_detail::least_magnitude(x.range),
                  high = rounded_detail::least_magnitude(y.range);
     // |log(z + d) - log z| <= |d| / (|z| - |d|)
-    const double distance = std::hypot(low, high) * (1 - 4 * interval_detail::kUlp) - rest;
+    const double distance = hypot(low, high) * (1 - 4 * interval_detail::kUlp) - rest;
     const double turned = moved / (distance - moved);
     if (!(distance > moved)) {
         // No two angles are more than half a turn apart.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "anamorph/image/part_source.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/sequence.h"
 
@@ -24,7 +25,7 @@ bool any_given(const ParameterValues& values) {
 
 /// How far within the rim of a lens a ray of it lies, in radians; below 0 where the lens does not see it.
 double margin(const Ray<double>& ray, double half_fov) {
-    return half_fov - std::atan2(std::hypot(ray.x, ray.y), ray.z);
+    return half_fov - std::atan2(hypot(ray.x, ray.y), ray.z);
 }
 
 /// The weight of a lens by its own margin and the other's.

@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "anamorph/image/part_source.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/rows.h"
@@ -108,7 +109,7 @@ ConcentricStack read_concentric_stack(const ParameterValues& values) {
     stack.circles = values.whole("circles");
     if (values.given("depth")) stack.depth = values.number("depth");
     stack.viewpoint = {values.number("x"), values.number("z")};
-    if (!(std::hypot(stack.viewpoint.x, stack.viewpoint.y) <= 1 + 1e-12))
+    if (!(hypot(stack.viewpoint.x, stack.viewpoint.y) <= 1 + 1e-12))
         throw Error("z", shortest(stack.viewpoint.y),
                     "must be inside the outer circle together with x=" + shortest(stack.viewpoint.x));
     return stack;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/rows.h"
@@ -81,7 +82,7 @@ struct DirectionFormula {
         constexpr Size globe = InverseView::kGlobe;
         const auto [x, y] = read_program<2>(points.point, J::variable(0.5 * globe.width + 0.5, 1, 0),
                                             J::variable(0.5 * globe.height + 0.5, 0, 1));
-        return std::hypot(x.c[1], y.c[1]) * globe.width / (2 * std::numbers::pi);
+        return hypot(x.c[1], y.c[1]) * globe.width / (2 * std::numbers::pi);
     }
 };
 

@@ -11,6 +11,7 @@
 #include "anamorph/chart/chart_numbers.h"
 #include "anamorph/image/layered_picture.h"
 #include "anamorph/image/masked_source.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/operation/film.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/pano_formula.h"
@@ -149,9 +150,8 @@ class EdgeDistance {
           m_has_ends(image.mask.rectangle || !image.chart.reaches_poles()) {}
 
     double operator()(const Point<double>& p) const {
-        double least = m_circle
-                           ? m_circle->radius - std::hypot(p.x - m_circle->middle.x, p.y - m_circle->middle.y)
-                           : HUGE_VAL;
+        double least = m_circle ? m_circle->radius - hypot(p.x - m_circle->middle.x, p.y - m_circle->middle.y)
+                                : HUGE_VAL;
         if (m_has_sides) least = std::min({least, p.x - m_box.x0, m_box.x1 - p.x});
         if (m_has_ends) least = std::min({least, p.y - m_box.y0, m_box.y1 - p.y});
         return least;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
@@ -24,7 +25,7 @@ double part_of_way(double offset, double ahead, double per_depth) {
 }
 
 glm::dvec2 horizontal(const Ray<double>& ray) {
-    const double length = std::hypot(ray.x, ray.z);
+    const double length = hypot(ray.x, ray.z);
     return length > 0 ? glm::dvec2(ray.x / length, ray.z / length) : glm::dvec2(0.0);
 }
 
@@ -45,7 +46,7 @@ void ConcentricStack::check() const {
                     "must be an integer from 1 to " + std::to_string(kMostCircles));
     if (!(depth > 1)) throw Error("depth", shortest(depth), "must be a number above 1");
     // By a hair farther it may be from rounding.
-    if (!(std::hypot(viewpoint.x, viewpoint.y) <= 1 + 1e-12))
+    if (!(hypot(viewpoint.x, viewpoint.y) <= 1 + 1e-12))
         throw Error("viewpoint", shortest(viewpoint.x) + "," + shortest(viewpoint.y),
                     "must be at most 1 from the centre");
 }
@@ -96,7 +97,7 @@ ConcentricMap::ConcentricMap(const Panorama& view, const ConcentricStack& stack,
       m_per_depth(inverse_of(stack.depth)) {
     const DoubleDouble slit = static_cast<DoubleDouble>(stack.radius(circle)) * m_per_depth;
     m_slit = Constant(slit);
-    m_least_height = (1 - std::hypot(stack.viewpoint.x, stack.viewpoint.y) * m_per_depth) / 2;
+    m_least_height = (1 - hypot(stack.viewpoint.x, stack.viewpoint.y) * m_per_depth) / 2;
     const DoubleDouble root = sqrt((1 - slit) * (1 + slit));
     m_slit_root = Constant(root);
     m_per_root = Constant(1 / root);
@@ -114,8 +115,8 @@ double ConcentricMap::offset_error(const Interval& x, const Interval& y, int pie
     using R = Rounded<double>;
     const Ray<R> ray = m_view.source_ray(R(x, 0, 0), R(y, 0, 0), piece);
     const auto least = [](const Interval& a) { return std::max({a.lo, -a.hi, 0.0}); };
-    const double moved = std::hypot(ray.x.error, ray.z.error);
-    const double nearest = std::hypot(least(ray.x.range), least(ray.z.range)) * (1 - 0x1p-50);
+    const double moved = hypot(ray.x.error, ray.z.error);
+    const double nearest = hypot(least(ray.x.range), least(ray.z.range)) * (1 - 0x1p-50);
     if (!(nearest > moved)) return HUGE_VAL;
     // Directions of vectors a and b are at most |a - b| / sqrt(|a| |b|) apart, and offsets as much, as the viewpoint is at most
     // 1 from the centre, a hair aside. In units of 2^-53: hypot is off by 8 of a direction, its quotients by 1, the products and

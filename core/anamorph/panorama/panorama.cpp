@@ -2,6 +2,7 @@
 #include "anamorph/panorama/panorama.h"
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/quarter_turns.h"
 
 namespace anamorph {
@@ -125,7 +126,7 @@ namespace {
 double most_stretch(const PlaneTransfer& transfer) {
     constexpr double kFarthest = 1e6, kLeast = 1e-6;
     const auto [x, y, z] = transfer.camera;
-    const double far = std::hypot(x, y, z);
+    const double far = hypot(x, y, z);
     const double from_plane = std::fabs(1 - glm::dot(transfer.normal(), glm::dvec3(x, y, z)));
     if (!(far <= kFarthest && from_plane >= kLeast))
         throw Error("TrX, TrY, TrZ", std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(-z),

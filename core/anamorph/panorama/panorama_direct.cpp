@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/chart/chart_near.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/panorama/panorama.h"
 #include "anamorph/plan/near_pixels.h"
 
@@ -40,7 +41,7 @@ NearReading Panorama::direct(double x, double y, double half_width, double half_
     WrittenBase::to = nullptr;
     const double period_x = period();
     return {{p.x.base.value, p.y.base.value},
-            std::hypot(drawn_error(p.x, period_x), drawn_error(p.y, period_x)) * rounded_detail::kUp,
+            hypot(drawn_error(p.x, period_x), drawn_error(p.y, period_x)) * rounded_detail::kUp,
             order};
 }
 

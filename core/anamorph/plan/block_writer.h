@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/plan/block.h"
 
 namespace anamorph {
@@ -91,7 +92,7 @@ class BlockWriter {
         const auto in_double = [](const double* c, std::int32_t base) {
             return 0x1p-29 * rounding<15>(c, base) + 0x1p-53 * (size(c, base) + std::fabs(double(base)));
         };
-        block.bound = error + std::hypot(in_double(x, block.base_x), in_double(y, block.base_y));
+        block.bound = error + hypot(in_double(x, block.base_x), in_double(y, block.base_y));
         if (!(block.bound <= m_tol)) return false;
         m_blocks.push_back(block);
         return true;

@@ -25,6 +25,7 @@
 #include "anamorph/geometry/box.h"
 #include "anamorph/geometry/point.h"
 #include "anamorph/geometry/size.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/jet.h"
 #include "anamorph/number/near_bound.h"
 
@@ -44,7 +45,7 @@ struct SourceEdges {
 template <class Real>
 double kept_error(const Point<Rounded<Real>>& p) {
     const double unit = std::is_same_v<Real, double> ? 0 : 0x1p-53;
-    return std::hypot(p.x.error + unit * p.x.computed_size(), p.y.error + unit * p.y.computed_size()) *
+    return hypot(p.x.error + unit * p.x.computed_size(), p.y.error + unit * p.y.computed_size()) *
            rounded_detail::kUp;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/jets.h"
 #include "anamorph/number/rounded.h"
 #include "anamorph/plan/formula_map.h"
@@ -249,8 +250,8 @@ class LinkOf final : public link_detail::ReadsFormula<LinkOf<Map>, MapLink, link
         // |f(a) - f(b)| <= |f'| |a - b| on a box, which is convex; the norm is at most Frobenius's.
         using J = Jet<Interval, 1>;
         const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), local);
-        return std::hypot(std::hypot(magnitude(p.x.c[1]), magnitude(p.x.c[2])),
-                          std::hypot(magnitude(p.y.c[1]), magnitude(p.y.c[2])));
+        return hypot(hypot(magnitude(p.x.c[1]), magnitude(p.x.c[2])),
+                     hypot(magnitude(p.y.c[1]), magnitude(p.y.c[2])));
     }
     template <class Real>
     double error_in(const Interval& x, const Interval& y, int piece, double off) const {

@@ -27,6 +27,7 @@
 #include "anamorph/geometry/bounds_tree.h"
 #include "anamorph/geometry/matrix2.h"
 #include "anamorph/geometry/point.h"
+#include "anamorph/number/hypot.h"
 
 namespace anamorph {
 
@@ -195,8 +196,8 @@ class PreimageSearch {
     Preimages result() {
         for (int k = 0; k < m_edges; ++k) compare(m_on_edge[k]);
         // What cannot be told apart may be any of them.
-        m_all.error = m_all.on_fold ? std::hypot(m_places.x1 - m_places.x0, m_places.y1 - m_places.y0)
-                                    : m_all.best.error;
+        m_all.error =
+            m_all.on_fold ? hypot(m_places.x1 - m_places.x0, m_places.y1 - m_places.y0) : m_all.best.error;
         return m_all;
     }
 
@@ -224,7 +225,7 @@ class PreimageSearch {
     template <class Cell>
     void give_up(const Cell& cell, const Part& s, const Part& t) {
         m_all.on_fold = true;
-        const double size = 2 * std::hypot(s.half * cell.width(), t.half * cell.height());
+        const double size = 2 * hypot(s.half * cell.width(), t.half * cell.height());
         take({cell.source(s.middle, t.middle), cell.fold(s, t).cell, false, size, 2 * size});
     }
 

@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 #include <numbers>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph {
 namespace {
 
@@ -140,7 +142,7 @@ double bound_of(const Point<SecondForms>& forms) {
     for (const glm::dvec2& d : directions)
         most =
             std::max(most, most_within(d.x * x.e + d.y * y.e, d.x * x.f + d.y * y.f, d.x * x.g + d.y * y.g));
-    const double sum = most / shortest + std::hypot(x.off, y.off);
+    const double sum = most / shortest + hypot(x.off, y.off);
     return sum * kHair;
 }
 
@@ -262,7 +264,7 @@ Branch EdgeRule::branch_between(const std::array<glm::dvec3, 3>& rays, const glm
     glm::dvec2 azimuths[3], half(0.0);
     double least = HUGE_VAL;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double size = std::hypot(rays[i].x, rays[i].z);
+        const double size = hypot(rays[i].x, rays[i].z);
         azimuths[i] = size > 0 ? glm::dvec2(rays[i].x, rays[i].z) / size : glm::dvec2(0.0);
     }
     for (std::size_t i = 0; i < 3; ++i) {
@@ -316,7 +318,7 @@ bool EdgeRule::is_off_in_middle(const glm::dvec3& a, const glm::dvec3& b) const 
         if (!chart.pieces_see_all() && !(chart.sees(local, piece) > 0)) return false;
         at[i] = chart.local_point(local, chart.branch(piece));
     }
-    const double off = std::hypot(at[2].x - 0.5 * (at[0].x + at[1].x), at[2].y - 0.5 * (at[0].y + at[1].y));
+    const double off = hypot(at[2].x - 0.5 * (at[0].x + at[1].x), at[2].y - 0.5 * (at[0].y + at[1].y));
     // Texels are off by some ten roundings of numbers up to the panorama's size, two of them by twice that.
     const double rounding = 64 * 0x1p-53 * std::max(chart.width(), chart.height());
     const bool is_within =

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
@@ -306,7 +307,7 @@ class Cutting {
             glm::dvec3 r = rays[i];
             const double least = m_rule.on_plane() * glm::length(r);
             const bool near = azimuth && std::fabs(r.x) <= least;
-            if (near && std::fabs(r.z) <= least && std::hypot(r.x, r.z) <= least)
+            if (near && std::fabs(r.z) <= least && hypot(r.x, r.z) <= least)
                 r = {middle.x * 0x1p-60, r.y, middle.z * 0x1p-60};
             else if (near && r.z < 0)
                 r.x = std::copysign(r.z * 0x1p-100, middle.x);
@@ -321,7 +322,7 @@ class Cutting {
         double most = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Point<double> d = piece.corners[i].texel - piece.corners[(i + 1) % 3].texel;
-            most = std::max(most, std::hypot(d.x, d.y));
+            most = std::max(most, hypot(d.x, d.y));
         }
         return most;
     }

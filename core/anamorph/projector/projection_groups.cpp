@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/panorama/panorama_residual.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -35,7 +36,7 @@ double bound_of_cell(const Chart& chart, const ProjectionGroup& group, const Bra
     const auto off = [&](const Jet& jet) {
         return (2 * magnitude(jet.c[3]) * h * h + 2 * magnitude(jet.c[5]) * v * v) / 8;
     };
-    return std::hypot(off(p.x), off(p.y));
+    return hypot(off(p.x), off(p.y));
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ void ProjectionGroups::set_residuals(ProjectionGroup& group, const Branch& branc
             const glm::dvec3 linear = group.linear * ray;
             const double u = exact.x - linear.x / linear.z, v = exact.y - linear.y / linear.z;
             group.residuals.push_back({static_cast<float>(u), static_cast<float>(v)});
-            const double size = std::hypot(u, v);
+            const double size = hypot(u, v);
             if (!(size <= largest)) largest = size;
             if (i == 0 || j == 0) continue;
             const double bound =

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/json_file.h"
 
 namespace anamorph {
@@ -96,7 +97,7 @@ double angle_between(double yaw, double pitch, double other_yaw, double other_pi
     const double across = std::cos(q) * std::sin(turn);
     const double up = std::cos(p) * std::sin(q) - std::sin(p) * std::cos(q) * std::cos(turn);
     const double along = std::sin(p) * std::sin(q) + std::cos(p) * std::cos(q) * std::cos(turn);
-    return std::atan2(std::hypot(across, up), along) / per_degree;
+    return std::atan2(hypot(across, up), along) / per_degree;
 }
 
 int TourPanorama::spot_at(double yaw, double pitch) const {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -112,7 +113,7 @@ struct SlopeSums {
         if (!(trace > 0)) return {0, 0};
         // The columns of a matrix of rank 1 lie along its one direction, whose square is the trace.
         Point<double> along = xx >= yy ? Point<double>{xx, xy} : Point<double>{xy, yy};
-        along = along * (1 / std::hypot(along.x, along.y));
+        along = along * (1 / hypot(along.x, along.y));
         return along * ((along.x * x + along.y * y) / trace);
     }
 };
@@ -290,7 +291,7 @@ struct Wanted {
 
     double texels(const Texture& d) const {
         // hypot rounds less than 1 ulp, the products half of one.
-        return std::hypot(d.x * texture.width, d.y * texture.height) * (1 + 0x1p-51);
+        return hypot(d.x * texture.width, d.y * texture.height) * (1 + 0x1p-51);
     }
     double rounding(double size) const {
         return kTextureRounding * 0x1p-53 * size * std::max(texture.width, texture.height);

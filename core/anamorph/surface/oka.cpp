@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "anamorph/error.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/portable.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/surface/seen_range.h"
@@ -99,7 +100,7 @@ double length_of(Taylor p, const QuarterRanges& ranges, double right, double dow
                 return magnitude(g.c[0] + g.c[1] * s + g.c[2] * t + g.c[3] * square(s) + g.c[4] * (s * t) +
                                  g.c[5] * square(t));
             };
-            const double here = std::hypot(size(p[0]), size(p[1]));
+            const double here = hypot(size(p[0]), size(p[1]));
             if (std::isnan(here)) return HUGE_VAL;
             length = std::max(length, here);
         }
@@ -142,7 +143,7 @@ double quick_bound_of(const OkaBlock& map, const DrapedSurface& surface, const C
                 length[axis] = magnitude(off[axis].c[0] + off[axis].c[1] * s + off[axis].c[2] * t +
                                          bends[axis].c[3] * square(s) + bends[axis].c[4] * (s * t) +
                                          bends[axis].c[5] * square(t));
-            const double here = std::hypot(length[0], length[1]);
+            const double here = hypot(length[0], length[1]);
             if (std::isnan(here)) return HUGE_VAL;
             size = std::max(size, here);
         }

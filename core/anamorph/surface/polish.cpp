@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/surface/seen_range.h"
 
 namespace anamorph::surface {
@@ -76,7 +77,7 @@ PointPolish::Polished PointPolish::polish(double x, double y, double u, double v
         const double next_u = std::clamp(to.u - du, 0.0, 1.0), next_v = std::clamp(to.v - dv, 0.0, 1.0);
         if (!std::isfinite(du + dv)) return to;
         const Step next = step(x, y, next_u, next_v);
-        const bool nearer = std::hypot(next.off_x, next.off_y) < std::hypot(s.off_x, s.off_y);
+        const bool nearer = hypot(next.off_x, next.off_y) < hypot(s.off_x, s.off_y);
         if (!nearer) break;
         to.u = next_u;
         to.v = next_v;
@@ -96,9 +97,9 @@ PointPolish::Polished PointPolish::polish(double x, double y, double u, double v
                                       std::fabs(m_camera.matrix()[2][i]));
     const double lost = 2 * m_surface.rounding(to.u, to.v) * turned +
                         0x1p-50 * (largest(s.p) + 2 * largest(m_camera.offset()));
-    const double slope = m_camera.perspective() ? std::hypot(s.p.x, s.p.y) / s.p.z : 0;
+    const double slope = m_camera.perspective() ? hypot(s.p.x, s.p.y) / s.p.z : 0;
     if (!(lost < depth / 2)) return to;
-    const double bound = std::hypot(s.off_x, s.off_y) + 4 * m_camera.focal() * lost * (1 + slope) / depth +
+    const double bound = hypot(s.off_x, s.off_y) + 4 * m_camera.focal() * lost * (1 + slope) / depth +
                          0x1p-50 * (std::fabs(x) + std::fabs(y));
     to.bound = std::isnan(bound) ? HUGE_VAL : bound;
     return to;

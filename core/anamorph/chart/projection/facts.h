@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/rounded.h"
 
 namespace anamorph {
@@ -22,7 +23,7 @@ struct Heading {
     Heading() = default;
     /// Constructs the heading of the point (x, y); that of angle 0 for the origin and for points that are not finite.
     Heading(double y, double x) {
-        const double r = std::hypot(x, y);
+        const double r = hypot(x, y);
         if (!(r > 0 && r < HUGE_VAL)) return;
         angle = std::atan2(y, x);
         cos = x / r;

@@ -10,6 +10,8 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph::figure {
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180, kTurn = 2 * std::numbers::pi;
@@ -38,7 +40,7 @@ inline glm::dvec3 angles_of_turn(const glm::dquat& q) {
     const double a3 = 2 * std::atan2(sine, std::abs(q.w)) / kRadiansPerDegree;
     // What is rounding error does not turn: no axis, or one along z, whose first angle is 0.
     if (!(sine > 1e-15)) return glm::dvec3(0.0);
-    const double level = std::hypot(v.x, v.y);
+    const double level = hypot(v.x, v.y);
     double a1 = level > 1e-14 * sine ? std::atan2(v.y, v.x) / kRadiansPerDegree : 0.0;
     double a2 = std::atan2(v.z, level) / kRadiansPerDegree;
     if (a1 < 0) a1 += 360;
@@ -59,7 +61,7 @@ inline glm::dquat turn_xyz(const glm::dvec3& angles) {
 /// The angles x, z in (-180, 180] and y in [-90, 90] with Rx Ry Rz = rotation.
 inline glm::dvec3 xyz_of_rotation(const glm::dmat3& r) {
     // Rx Ry Rz has (row, column): (0,0) = cy cz, (0,1) = -cy sz, (0,2) = sy, (1,2) = -sx cy, (2,2) = cx cy.
-    const double cy = std::hypot(r[0][0], r[1][0]);
+    const double cy = hypot(r[0][0], r[1][0]);
     const double y = std::atan2(r[2][0], cy);
     if (cy < 1e-9) return {std::atan2(r[1][2], r[1][1]) / kRadiansPerDegree, y / kRadiansPerDegree, 0.0};
     return glm::dvec3(std::atan2(-r[2][1], r[2][2]), y, std::atan2(-r[1][0], r[0][0])) / kRadiansPerDegree;

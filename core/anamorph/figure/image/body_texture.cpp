@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/number/hypot.h"
 #include "anamorph/number/jet.h"
 
 namespace anamorph::figure {
@@ -69,8 +70,7 @@ bool BodyTexture::read_average(const Jacobian& jacobian, double u, double v) {
 }
 
 bool BodyTexture::read_trilinear(const Jacobian& jacobian, double u, double v) {
-    const double longer =
-        std::max(std::hypot(jacobian.x_i, jacobian.y_i), std::hypot(jacobian.x_j, jacobian.y_j));
+    const double longer = std::max(hypot(jacobian.x_i, jacobian.y_i), hypot(jacobian.x_j, jacobian.y_j));
     // Between the last level whose texels are shorter than that, and the next.
     const auto texel = [&](int level) {
         const std::array<double, 2>& scale = m_chooser.scale(level);

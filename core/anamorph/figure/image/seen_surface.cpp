@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "anamorph/figure/outline/outline_body.h"
+#include "anamorph/number/hypot.h"
 
 namespace anamorph::figure {
 namespace {
@@ -126,7 +127,7 @@ double SeenSurface::nearest_in_pixel(double x, double y) const {
     const double dx = x - m_at.x, dy = y - m_at.y;
     // Over the pixel w is at most `w`, and sqrt(m) |(e1, e2)| at least `e`.
     const double w = m_w(dx, dy) + m_reach;
-    const double e = std::max(0.0, std::sqrt(m_square) * std::hypot(m_e1(dx, dy), m_e2(dx, dy)) - m_reach);
+    const double e = std::max(0.0, std::sqrt(m_square) * hypot(m_e1(dx, dy), m_e2(dx, dy)) - m_reach);
     if (!(w >= e)) return -HUGE_VAL;
     return m_lean(dx, dy) + m_lean.over_half_pixel() + m_bulge * std::sqrt((w - e) * (w + e));
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "anamorph/figure/body/rotation.h"
+#include "anamorph/number/hypot.h"
 
 namespace anamorph::figure {
 namespace {
@@ -135,7 +136,7 @@ void turn(FigureState& state, const FigurePart& part, const glm::dquat& by, glm:
 
 double half_height(const FigureState::Body& body) {
     const glm::dmat3 r = glm::mat3_cast(body.turn);
-    return std::hypot(body.axes.x * r[0].y, body.axes.y * r[1].y, body.axes.z * r[2].y);
+    return hypot(body.axes.x * r[0].y, body.axes.y * r[1].y, body.axes.z * r[2].y);
 }
 
 double lowest(const FigureState& state, const std::vector<int>& bodies) {

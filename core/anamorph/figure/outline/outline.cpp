@@ -10,6 +10,7 @@
 #include "anamorph/figure/outline/outline_body.h"
 #include "anamorph/figure/outline/outline_crossing.h"
 #include "anamorph/figure/outline/outline_hiding.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph::figure {
@@ -21,7 +22,7 @@ struct Depth {
 
     explicit Depth(const Ellipse<glm::dvec3>& viewed)
         : w(viewed.center.z),
-          reach(std::hypot(viewed.cosine.z, viewed.sine.z)),
+          reach(hypot(viewed.cosine.z, viewed.sine.z)),
           peak(std::atan2(viewed.sine.z, viewed.cosine.z)) {}
     /// The geometric mean of the nearest and the farthest.
     double mean() const { return std::sqrt((w - reach) * (w + reach)); }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "anamorph/figure/outline/outline.h"
+#include "anamorph/number/hypot.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph::figure {
@@ -46,7 +47,7 @@ std::vector<double> even_angles(const Outline& outline, const Arc& arc, const Vi
 double deviation(const Ellipse<glm::dvec3>& limb, double a, double b, double zoom) {
     const double m = 0.5 * (a + b), h = 0.5 * (b - a);
     const glm::dvec3 r = (limb(m) - limb.center) * sagitta(h), from = limb(a), to = limb(b);
-    const double reach = std::hypot(limb.cosine.z, limb.sine.z);
+    const double reach = hypot(limb.cosine.z, limb.sine.z);
     // The farthest nearer point of arc and chord: the ends', less the chord's sagitta.
     const double nearest = std::max(std::min(from.z, to.z) - std::fabs(r.z), limb.center.z - reach);
     if (!(nearest > 0)) return HUGE_VAL;

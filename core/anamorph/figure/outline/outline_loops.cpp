@@ -18,6 +18,7 @@
 #include "anamorph/figure/body/eigenvectors.h"
 #include "anamorph/figure/body/rotation.h"
 #include "anamorph/figure/outline/outline_roots.h"
+#include "anamorph/number/hypot.h"
 
 namespace anamorph::figure {
 namespace {
@@ -73,7 +74,7 @@ class Sweep {
         m_pole_size = glm::length(m_at_pole);
         // The larger singular value.
         const double a = glm::dot(one, one), b = glm::dot(two, two);
-        m_equator_size = std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), glm::dot(one, two)));
+        m_equator_size = std::sqrt(0.5 * (a + b) + hypot(0.5 * (a - b), glm::dot(one, two)));
         m_skew = std::fabs(glm::dot(one, m_at_pole)) + std::fabs(glm::dot(two, m_at_pole));
         bound_by_form(axes);
     }

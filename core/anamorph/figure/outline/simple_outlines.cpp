@@ -11,6 +11,8 @@
 #include <numbers>
 #include <optional>
 
+#include "anamorph/number/hypot.h"
+
 namespace anamorph::figure {
 namespace {
 
@@ -51,7 +53,7 @@ double seen_distance(const Ellipsoid& body, const glm::dmat3& offsets, const Vie
             b += offsets[k].x * offsets[k].y;
             c += offsets[k].y * offsets[k].y;
         }
-        return view.scale * std::sqrt(0.5 * (a + c + std::hypot(a - c, 2 * b)));
+        return view.scale * std::sqrt(0.5 * (a + c + hypot(a - c, 2 * b)));
     }
     // x / z of two points that are d apart, with z at least z0 and |x| / z at most t, differs by at most d (1 + t) / z0. Boxes reach
     // sqrt(3) kBoxScale = 1.27 of the longest half-axis, contours at most 2 (one alone, of which k = 2).
