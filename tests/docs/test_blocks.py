@@ -176,5 +176,27 @@ class Others(unittest.TestCase):
                 self.assertIn(anchor, headings, path)
 
 
+class Proofs(unittest.TestCase):
+    """What docs/proofs.md names: its files are there, and the tests that hold a chapter to an oracle."""
+    @classmethod
+    def setUpClass(cls):
+        cls.chapters = read("docs/proofs.md").split("\n## ")[1:]
+        cls.sources = "\n".join(path.read_text(encoding="utf-8") for path in (SOURCE / "tests/core").glob("*.cpp"))
+
+    def test_every_chapter_names_files_and_tests_that_are_there(self):
+        tests = {f"{suite}.{name}" for suite, name in re.findall(r"\b(?:TYPED_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", self.sources)}
+        for chapter in self.chapters:
+            title, words = chapter.split("\n")[0], re.findall(r"`([^`]+)`", " ".join(chapter.split()))
+            files = [word for word in words if re.fullmatch(r"([\w-]+/)+[\w-]+\.(h|cpp)", word)]
+            held = [word for word in words if re.fullmatch(r"[A-Z]\w+\.[A-Z]\w+", word)]
+            with self.subTest(title):
+                self.assertGreater(len(files), 2)
+                self.assertGreater(len(held), 2)
+            for file in files:
+                self.assertTrue((SOURCE / "core/anamorph" / file).exists(), f"{title}: {file}")
+            for name in held:
+                self.assertTrue(name in tests, f"{title}: no test {name}")
+
+
 if __name__ == "__main__":
     unittest.main()
