@@ -25,7 +25,7 @@ PAGES = {
     "Pictures": ["docs/recipes.md", "docs/pano.md", "docs/lens.md", "docs/map.md", "docs/warp.md", "docs/morph.md", "docs/mosaic.md", "docs/drape.md", "docs/figure.md"],
     "Figures": ["docs/figures.md", "examples/figures/README.md"],
     "Programs": ["docs/python.md", "docs/vtk.md", "plugins/paraview/README.md", "docs/cpp.md", "docs/hash.md", "docs/web.md"],
-    "How it works": ["docs/conventions.md", "docs/proofs.md", "docs/machines.md", "docs/speed.md", "docs/literature.md", "tests/bench/costs.md"],
+    "How it works": ["docs/conventions.md", "docs/proofs.md", "docs/architecture.md", "docs/machines.md", "docs/speed.md", "docs/literature.md", "tests/bench/costs.md"],
     "Working on it": ["docs/building.md", "CONTRIBUTING.md", "CHANGELOG.md"],
 }
 LINK = re.compile(r"\]\(([^)\s]+)\)")

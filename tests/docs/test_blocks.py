@@ -6,6 +6,7 @@ import os
 import re
 import shlex
 import subprocess
+import sys
 import unittest
 
 import blocks as tree
@@ -196,6 +197,18 @@ class Proofs(unittest.TestCase):
                 self.assertTrue((SOURCE / "core/anamorph" / file).exists(), f"{title}: {file}")
             for name in held:
                 self.assertTrue(name in tests, f"{title}: no test {name}")
+
+
+class Architecture(unittest.TestCase):
+    def test_the_drawing_shows_the_includes_that_there_are(self):
+        drawn = output(sys.executable, str(SOURCE / "docs/site/architecture.py"), str(SOURCE), "/dev/stdout")
+        self.assertTrue(drawn == read("docs/architecture.svg"), "docs/site/architecture.py draws docs/architecture.svg anew")
+
+    def test_files_that_are_named_are_there(self):
+        names = re.findall(r"`([\w/]+/[\w-]+\.(?:h|cpp|py))`", read("docs/architecture.md"))
+        self.assertGreater(len(names), 15)
+        for name in names:
+            self.assertTrue((SOURCE / name).exists() or (SOURCE / "core/anamorph" / name).exists(), name)
 
 
 if __name__ == "__main__":
