@@ -26,6 +26,7 @@
 #include "film_writer.h"
 #include "frame_range.h"
 #include "input_file.h"
+#include "misspelt_option.h"
 #include "mrasel.h"
 #include "picture_bytes.h"
 #include "progress.h"
@@ -184,7 +185,7 @@ class Command {
             return m_run();
         } catch (const CLI::ParseError& e) {
             if (e.get_exit_code() == 0) return m_app.exit(e);  // --help and --version
-            return fail(e.what());
+            return fail(what_is_wrong(e, m_app, argc, argv));
         } catch (const std::bad_alloc&) {
             return fail("not enough memory");
         } catch (const std::exception& e) {

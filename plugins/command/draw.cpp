@@ -48,7 +48,7 @@ class Film {
         const Operation* operation = operation_of(drawing.recipe);
         m_by_key = operation && !m_range->all && ParameterValues(*operation->parameters).knows("frame");
         if (m_by_key) return;
-        m_all = open_picture(drawing.recipe);
+        m_all = drawing.open(drawing.recipe, {});
         for (int s = 0; s < m_all->subimages(); ++s) m_numbers.push_back(number_of(s));
         if (!m_range->all && (m_range->first < m_numbers.front() || m_range->last > m_numbers.back()))
             throw Error("--frames", *drawing.frames,
@@ -65,7 +65,8 @@ class Film {
         const int number = m_range->all ? m_numbers[static_cast<std::size_t>(i)]
                                         : m_range->first + static_cast<int>(i) * m_range->step;
         try {
-            const PictureFile output{numbered_name(m_drawing.output, number), m_drawing.compression};
+            const PictureFile output{numbered_name(m_drawing.output, number), m_drawing.compression,
+                                     m_drawing.in_float};
             if (m_all) {
                 const auto at = std::find(m_numbers.begin(), m_numbers.end(), number);
                 if (at == m_numbers.end()) throw Error("there is none of that number");
@@ -75,7 +76,7 @@ class Film {
             std::vector<Assignment> given;
             if (m_by_key) given.push_back({"frame", std::to_string(number)});
             const std::string recipe = with_number(m_drawing.recipe, number);
-            const std::unique_ptr<PictureReader> picture = open_picture(recipe, given);
+            const std::unique_ptr<PictureReader> picture = m_drawing.open(recipe, given);
             expect_one(*picture, recipe);
             draw_picture_file(*picture, 0, output, [](auto) {});
         } catch (const std::exception& e) {
@@ -128,10 +129,10 @@ void draw_film(const Drawing& drawing, int jobs) {
 }
 
 void draw_one(const Drawing& drawing) {
-    const std::unique_ptr<PictureReader> picture = open_picture(drawing.recipe);
+    const std::unique_ptr<PictureReader> picture = drawing.open(drawing.recipe, {});
     Film::expect_one(*picture, drawing.recipe);
     Progress progress([&] { return tiles_of(picture->spec(0)).count(); }, "tiles");
-    draw_picture_file(*picture, 0, {drawing.output, drawing.compression},
+    draw_picture_file(*picture, 0, {drawing.output, drawing.compression, drawing.in_float},
                       [&](std::int64_t tiles) { progress.advance(tiles); });
 }
 

@@ -2,8 +2,14 @@
 // Pictures of recipes as files: one, or the frames of a film.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "anamorph/parameter/parameter.h"
+#include "picture_reader.h"
 
 namespace anamorph::command {
 
@@ -14,6 +20,11 @@ struct Drawing {
     std::optional<std::string> frames;       ///< "3", "1-48", "1-48x4", "all"
     std::optional<std::string> compression;  ///< that of PictureFile
     int jobs = 0;  ///< so many threads draw, each a frame where there are several; 0: one a processor
+    /// What is drawn of a recipe, of which keys are overridden.
+    std::function<std::unique_ptr<PictureReader>(const std::string& recipe,
+                                                 const std::vector<Assignment>& given)>
+        open = open_picture;
+    bool in_float = false;  ///< that of PictureFile
 };
 inline constexpr int kMostJobs = 256;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// anamorph-pictures, which anamorph runs: hash, draw, join and explain.
+// anamorph-pictures, which anamorph runs: hash, draw, stmap, join and explain.
 #include <OpenImageIO/imageio.h>
 
 #include <CLI/CLI.hpp>
@@ -16,8 +16,10 @@
 #include "anamorph/version.h"
 #include "draw.h"
 #include "explain.h"
+#include "misspelt_option.h"
 #include "part_file.h"
 #include "picture_reader.h"
+#include "stmap.h"
 
 extern "C" OIIO::ImageInput* anamorph_recipes_input_imageio_create();
 
@@ -43,6 +45,7 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     struct Given {
         std::string recipe, output;
         std::optional<std::string> part, crop, frames, compression;
+        StMapKind stmap;
         int jobs = 0;
         std::vector<std::string> names;
         int subimage = 0;
@@ -57,6 +60,13 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
                 "How FILE is packed, in its format's words: zip, filtered, huffman, rle or fixed of a PNG, "
                 "maybe with a level, such as zip:9; piz, zip, dwaa:45 of an EXR, jpeg:90")
             ->option_text("NAME [rle for PNG]");
+    };
+
+    const auto add_jobs = [given](CLI::App& command) {
+        command
+            .add_option("--jobs", given->jobs,
+                        "Threads that draw, each a frame where there are several; 0 is one a processor")
+            ->option_text("N [0]");
     };
 
     CLI::App* hash = app.add_subcommand("hash", "Print the hash of pictures: of recipes and files");
@@ -95,10 +105,7 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
         ->option_text("A-B[xS]")
         ->excludes(part);
     add_compression(*draw_command)->excludes(part);
-    draw_command
-        ->add_option("--jobs", given->jobs,
-                     "Threads that draw, each a frame where there are several; 0 is one a processor")
-        ->option_text("N [0]");
+    add_jobs(*draw_command);
     draw_command->callback([=, &run] {
         run = [=] {
             declare_recipes();
@@ -106,6 +113,45 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
                 return draw({given->recipe, given->output, given->frames, given->compression, given->jobs});
             use_threads(given->jobs);
             draw_part(given->recipe, share_of(*given->part), given->output);
+        };
+    });
+
+    CLI::App* stmap = app.add_subcommand(
+        "stmap", "Draw a recipe's map as an ST-map: where in the source each pixel comes from");
+    stmap
+        ->add_option("RECIPE", given->recipe,
+                     "view.pano, or plate.exr.lens?lens=3de4:k1=0.05; {frame} in it is the frame's number")
+        ->required();
+    stmap
+        ->add_option("-o,--output", given->output,
+                     "The file, .exr or another that holds float: u and v, 0 to 1 on the source, as R and G. "
+                     "Of frames, {frame} stands for the number in four digits, which else goes before the "
+                     "ending")
+        ->required()
+        ->option_text("FILE");
+    stmap->add_flag("--flip-v", given->stmap.up,
+                    "v goes up, 0 at the lower edge, as Nuke, Gaffer and Natron have it; without, down");
+    stmap->add_flag("--inverse", given->stmap.inverse,
+                    "The other way: where in the picture each pixel of the source goes, found by Newton's "
+                    "iteration, without a bound");
+    stmap
+        ->add_option("--frames", given->frames,
+                     "The frames, with {frame} in RECIPE, by its key frame, or of its pictures from 0 on")
+        ->option_text("A-B[xS]");
+    add_compression(*stmap);
+    add_jobs(*stmap);
+    stmap->footer(
+        "anamorph draw \"plate.exr.warp?mesh=map.exr\" -o flat.exr draws a picture through an ST-map");
+    stmap->callback([=, &run] {
+        run = [=] {
+            declare_recipes();
+            Drawing drawing{given->recipe, given->output, given->frames, given->compression, given->jobs};
+            drawing.in_float = true;
+            drawing.open = [kind = given->stmap](const std::string& recipe,
+                                                 const std::vector<Assignment>& keys) {
+                return open_stmap(recipe, keys, kind);
+            };
+            draw(drawing);
         };
     });
 
@@ -152,7 +198,8 @@ int run(int argc, char** argv) {
         throw Error("the standard output cannot be written");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
-        std::cerr << "anamorph: " << message_of(e, "the picture") << "\n";
+        std::cerr << "anamorph: " << message_of(Error(what_is_wrong(e, app, argc, argv)), "the picture")
+                  << "\n";
     } catch (const std::exception& e) {
         std::cerr << "anamorph: " << message_of(e, "the picture") << "\n";
     }

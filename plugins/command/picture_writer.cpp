@@ -86,6 +86,11 @@ void set_compression(const OIIO::ImageOutput& out, const PictureFile& file, Imag
     if (level >= 0) spec.attribute("png:compressionLevel", level);
 }
 
+/// Has a format numbers of the type float, in any number of channels?
+bool holds_float(std::string_view format) {
+    return format == "openexr" || format == "tiff" || format == "fits";
+}
+
 /// A file that is no plain one to OpenImageIO: into such libjpeg writes by itself, and ends the program where there is no room.
 class OwnFile final : public OIIO::Filesystem::IOFile {
   public:
@@ -198,6 +203,9 @@ void write_picture(const ImageSpec& picture, const PictureFile& file,
     if (!out) throw Error(OIIO::geterror());
     set_compression(*out, file, spec);
     const std::string format = out->format_name();
+    if (file.in_float && !holds_float(format))
+        throw Error("--output", printable(output),
+                    "must be of a format that holds float, such as .exr or .tif");
     OutputFile whole(output);
     const std::string path = whole.path();
     WatchedWriter writer(std::move(out), path);

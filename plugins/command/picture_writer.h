@@ -19,6 +19,8 @@ struct PictureFile {
     /// How it is packed, in its format's words, such as "zip" or "zip:4". Without, PNG files are "rle", which takes a fraction of the time
     /// of zlib's own choice and packs photographs smaller; others are as OpenImageIO has them.
     std::optional<std::string> compression;
+    /// Is a format refused that has no numbers of the type float, which the picture has?
+    bool in_float = false;
 };
 
 /// Writes a picture whose rows of tiles `rows` makes, one after the other, under another name until it is whole. Where OpenImageIO

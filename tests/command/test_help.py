@@ -52,7 +52,7 @@ class Help(unittest.TestCase):
     def test_pages_of_what_is_done_with_pictures(self):
         if not os.path.exists(os.path.join(os.path.dirname(PROGRAM), "anamorph-pictures")):
             self.skipTest("this build has no OpenImageIO")
-        for name in ("hash", "draw", "join", "explain"):
+        for name in ("hash", "draw", "stmap", "join", "explain"):
             self.assertEqual(run("help", name), run(name, "--help"))
             self.assertIn("Usage: anamorph " + name, run("help", name)[1])
 
@@ -105,7 +105,7 @@ class Help(unittest.TestCase):
             self.assertEqual([p for p in pathlib.Path(folder).rglob(".*")], [])
 
     def test_completes_command_lines(self):
-        self.assertEqual(self.completed("anamorph", ""), sorted("help new run doctor hash draw join explain figure machine bench".split()))
+        self.assertEqual(self.completed("anamorph", ""), sorted("help new run doctor hash draw stmap join explain figure machine bench".split()))
         self.assertEqual(self.completed("/usr/bin/anamorph", "d"), ["doctor", "draw"])
         self.assertEqual(self.completed("anamorph", "--v"), ["--version"])
         self.assertEqual(self.completed("anamorph", "help", "m"), ["map", "morph", "mosaic"])
@@ -149,7 +149,10 @@ class Help(unittest.TestCase):
                 (["new", "warpp"], ", perhaps warp is meant: must be"),
                 (["new", "pano", "a", "b"], "SOURCE=b: pano has 1 source at most"),
                 (["new", "pano", "-o", "view.warp"], "--output=view.warp: must end in .pano"),
+                (["new", "morph", "one.jpg", "-o", "nowhere/m.morph"], "SOURCE=one.jpg: morph needs 2 images, one after the other, for a and b"),
                 (["drew"], "command=drew: there is none of that name, perhaps draw is meant: must be one of hash, "),
+                (["doctor", "--halp"], "--halp: there is no such option, perhaps --help is meant"),
+                (["new", "--out", "x.pano", "pano"], "--out: there is no such option, perhaps --output is meant"),
                 (["help", "a\nb\x1b"], "operation=a?b?: there is none of that name: must be one of"),
                 ([], "A subcommand is required"),
                 (["help", "pano", "warp"], "warp")):
@@ -157,6 +160,21 @@ class Help(unittest.TestCase):
             self.assertEqual((status, page), (1, ""), arguments)
             self.assertTrue(error.startswith("anamorph: ") and message in error, error)
             self.assertEqual(error.count("\n"), 1)
+
+    def test_misspelt_options_of_all_programs(self):
+        folder = os.path.dirname(PROGRAM)
+        for program, arguments, meant in (("anamorph-figure", ["svg", "--hiden=dash", "x.nudes"], "--hidden"),
+                                          ("anamorph-figure", ["film", "x.nudes", "--fsp", "12", "-o", "x.mp4"], "--fps"),
+                                          ("anamorph-machine", ["--verison"], "--version"),
+                                          ("anamorph-pictures", ["draw", "v.pano", "--jbos", "4", "-o", "v.exr"], "--jobs"),
+                                          ("anamorph-pictures", ["draw", "v.pano", "--otput", "v.exr"], "--output"),
+                                          ("anamorph-pictures", ["stmap", "v.pano", "--flip_v", "-o", "v.exr"], "--flip-v")):
+            if not os.path.exists(os.path.join(folder, program)):
+                continue  # this build has no OpenImageIO
+            result = subprocess.run([os.path.join(folder, program), *arguments], capture_output=True, text=True, timeout=50)
+            misspelt = next(word for word in arguments if word.startswith("--")).split("=")[0]
+            self.assertEqual((result.returncode, result.stdout, result.stderr.split(": ", 1)[1]),
+                             (1, "", f"{misspelt}: there is no such option, perhaps {meant} is meant\n"), arguments)
 
     def test_output_that_cannot_be_written_is_told(self):
         with open("/dev/full", "w", encoding="utf-8") as full:

@@ -20,6 +20,7 @@
 #include "anamorph/version.h"
 #include "completion.h"
 #include "doctor.h"
+#include "misspelt_option.h"
 #include "pictures_program.h"
 #include "plugin_place.h"
 #include "recipe_template.h"
@@ -116,7 +117,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", "anamorph " + std::string(version()));
     CLI::App* help = app.add_subcommand("help", "List the operations, or the keys of one");
     app.footer(
-        "hash, draw, join and explain: of pictures (anamorph hash --help)\n"
+        "hash, draw, stmap, join and explain: of pictures (anamorph hash --help)\n"
         "figure and machine: programs (anamorph figure --help)\n"
         "bench: speed against error on this machine (anamorph bench --help)");
     std::string operation;
@@ -168,7 +169,7 @@ int run(int argc, char** argv) {
         throw Error("the standard output cannot be written");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
-        std::cerr << "anamorph: " << message_of(e, "the page") << "\n";
+        std::cerr << "anamorph: " << message_of(Error(what_is_wrong(e, app, argc, argv)), "the page") << "\n";
     } catch (const std::exception& e) {
         std::cerr << "anamorph: " << message_of(e, "the page") << "\n";
     }

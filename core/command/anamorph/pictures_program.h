@@ -7,7 +7,7 @@
 namespace anamorph::command {
 
 /// The subcommands of anamorph-pictures, which need OpenImageIO.
-inline constexpr std::string_view kOfPictures[] = {"hash", "draw", "join", "explain"};
+inline constexpr std::string_view kOfPictures[] = {"hash", "draw", "stmap", "join", "explain"};
 /// Programs anamorph-NAME, which take all words behind NAME.
 inline constexpr std::string_view kPrograms[] = {"figure", "machine"};
 /// That of the Python module.

@@ -86,6 +86,14 @@ void write_recipe_template(const Operation& operation, std::vector<std::string> 
     const fs::path folder = fs::path(output).parent_path();
     if (find_operation(fs::path(output).extension().string().erase(0, 1)) != &operation)
         throw Error("--output", printable(output), "must end in ." + operation.name);
+    if (!sources.empty() && sources.size() < operation.least_sources) {
+        std::string keys;
+        for (std::size_t i = 0; i < operation.least_sources; ++i)
+            keys += (i == 0 ? "" : i + 1 < operation.least_sources ? ", " : " and ") + operation.sources[i];
+        throw Error("SOURCE", printable(sources.back()),
+                    operation.name + " needs " + std::to_string(operation.least_sources) +
+                        " images, one after the other, for " + keys);
+    }
     // Names in a recipe file are relative to its folder.
     for (std::string& source : sources)
         if (!folder.empty() && fs::path(source).is_relative())

@@ -20,6 +20,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 #include "anamorph/version.h"
+#include "misspelt_option.h"
 #include "output_file.h"
 #include "pfm.h"
 
@@ -121,7 +122,7 @@ class Command {
             return 0;
         } catch (const CLI::ParseError& e) {
             if (e.get_exit_code() == 0) return m_app.exit(e);  // --help and --version
-            return fail(e);
+            return fail(Error(what_is_wrong(e, m_app, argc, argv)));
         } catch (const std::exception& e) {
             return fail(e);
         }
