@@ -402,9 +402,14 @@ py::dict dict_of(const Operation& operation) {
 
 /// Hands an error on as anamorph.Error, which names the parameter.
 void throw_as(const py::handle& type, const Error& error, const std::string& parameter) {
+    // What is given in place of a file has a name that no caller gave (values.cpp).
+    std::string what = error.what();
+    const std::string name = "<" + parameter + ">.json";
+    for (std::size_t at = 0; (at = what.find(name, at)) != std::string::npos; at += parameter.size())
+        what.replace(at, name.size(), parameter);
     // Names of files may be no text.
     const py::object words = py::reinterpret_steal<py::object>(
-        PyUnicode_DecodeUTF8(error.what(), static_cast<py::ssize_t>(std::strlen(error.what())), "replace"));
+        PyUnicode_DecodeUTF8(what.data(), static_cast<py::ssize_t>(what.size()), "replace"));
     const py::object raised = type(words);
     raised.attr("parameter") = parameter;
     PyErr_SetObject(type.ptr(), raised.ptr());

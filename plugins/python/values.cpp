@@ -90,6 +90,12 @@ std::string numbers_text(const std::string& key, const py::handle& values, char 
     return text;
 }
 
+/// May a value be what a JSON file holds? Of images that is said with the key.
+bool takes_json(const Parameter& row) {
+    return row.type == ParameterType::file ||
+           (row.type == ParameterType::image && row.documentation.find(".json") != std::string::npos);
+}
+
 /// Adds a value as a recipe has it. What is no text, but stands for a file, gets a name.
 std::string text_of(const Parameter* row, const std::string& key, const py::handle& value, CallValues& to) {
     const ParameterType type = row ? row->type : ParameterType::text;
@@ -103,7 +109,11 @@ std::string text_of(const Parameter* row, const std::string& key, const py::hand
             throw py::type_error(key + " is a path of bytes: must be one of str");
         return bytes_of(path, key);
     }
-    if ((is_image || is_file) && (is_list || py::isinstance<py::dict>(value))) {
+    const bool is_json = is_list || py::isinstance<py::dict>(value);
+    if (is_image && (is_number(value) || (is_json && !takes_json(*row))))
+        throw py::type_error(key + " is a " + type_name(value) +
+                             ": must be an image: the name of a file, an array, an Image or a Picture");
+    if (is_json && (is_image || is_file)) {
         std::string name = "<" + key + ">.json";
         to.texts[name] = in_python("anamorph._checks", "json_of")(key, value).cast<std::string>();
         return name;

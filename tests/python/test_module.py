@@ -509,6 +509,16 @@ class BadInput(unittest.TestCase):
             self.assertEqual(caught.exception.parameter, "mesh")
         numbers = {**SHEET, "columns": np.int64(2), "vertices": np.array(SHEET["vertices"], np.float32)}
         np.testing.assert_array_equal(anamorph.warp(noise(48, 64), mesh=numbers), anamorph.warp(noise(48, 64), mesh=SHEET))
+        for keys, words in ((dict(deform=[[1.0]]), "^deform: must be an object with nothing but a list, deformations$"),
+                            (dict(deform={"deformations": [{"center": [1]}]}), "^deform: ")):
+            with self.subTest(keys), self.assertRaisesRegex(anamorph.Error, words):
+                anamorph.drape(noise(32, 64), **keys)
+        for key in ("back", "positions", "height"):
+            for value in ([[1.0]], {"a": 1}, 3, 0.5):
+                with self.subTest((key, value)), self.assertRaisesRegex(TypeError, f"^{key} is a {type(value).__name__}: must be an image: the name of a file, an array"):
+                    anamorph.drape(noise(32, 64), **{key: value})
+        with self.assertRaisesRegex(TypeError, "^mesh is a int: must be an image"):
+            anamorph.warp(noise(32, 64), mesh=3)
         with self.assertRaisesRegex(TypeError, "points is a ndarray"):
             anamorph.warp(noise(32, 64), points=np.zeros((3, 4)))
         for call in (lambda: anamorph.pano(src=noise(32, 64)), lambda: anamorph.morph(noise(4, 4), b=noise(4, 4))):
