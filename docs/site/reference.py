@@ -38,6 +38,8 @@ WORDS = [
     ("Styles of figures", "figure", "style", "walker.nudes.figure?frame=24&fit=1&background=255,255,255&style={}"),
     ("Lighting of figures", "figure", "lighting", "walker.nudes.figure?frame=24&fit=1&lighting={}"),
     ("Solid textures of figures", "figure", "solid", "walker.nudes.figure?frame=24&fit=1&solid={}"),
+    ("How a texture lies on a body", "figure", "mapping", "clad.nudes.figure?frame=1&zoom=2&style=textured&mapping={}"),
+    ("Filters of textures on bodies", "figure", "filter", "clad.nudes.figure?frame=1&zoom=2&style=textured&filter={}"),
     ("Outlines of figures", "figure", "outlines", "walker.nudes.figure?frame=24&fit=1&style=outline&background=255,255,255&outlines={}"),
 ]
 # What a word needs beside it.
@@ -46,6 +48,13 @@ NEEDS = {
     ("surface", "positions"): "&positions=positions.exr", ("to", "cubemap3x2"): "&size=144", ("to", "eac"): "&size=144", ("to", "cubecross"): "&size=144",
     ("to", "cubemap"): "&size=48", ("output", "folds"): "&amount=3",
 }
+# A body with a texture.
+CLAD = """figure ball 1 body
+ellipsoid body 240 180 240
+repeat 0 1 moveto ball body 500 500 500
+repeat 0 1 texture body label_px.png 0 0
+stop
+"""
 LENSES = {"ptlens": "a=0.02,b=-0.08,c=0", "brown": "k1=-0.1", "3de4": "k1=0.08", "kb4": "k1=0.1,k2=0.02", "division": "k1=-0.2", "poly": "k0=1,k1=0.2",
           "ocam": "a0=-134.6,a2=1.9e-3,a3=-8.4e-7,a4=7.6e-9,affine_c=1.0004,affine_d=2e-4"}
 MACHINES = {
@@ -83,6 +92,7 @@ class Reference:
         (folder / "words").mkdir(parents=True)
         draw.make_sources(sources, build, self.work)
         self.run("oiiotool", "round.png.map?u=x&v=y&output=stmap", "--ch", "0,1,=0.1", "--subc", "0.5,0.5,0", "--mulc", "1,-1,1", "-o", "positions.exr")
+        (self.work / "clad.nudes").write_text(CLAD, encoding="utf-8")
         self.operations = dict(re.findall(r"^  (\w+) +(.+)$", self.run("anamorph", "help"), re.M))
         self.keys = {name: keys_of(self.run("anamorph", "help", name)) for name in self.operations}
         self.threads, self.pending = ThreadPoolExecutor(max_workers=len(os.sched_getaffinity(0))), []

@@ -5,6 +5,7 @@ import importlib.util
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -118,6 +119,16 @@ class Drawn(unittest.TestCase):
         text = (self.site / "docs/reference.html").read_text(encoding="utf-8")
         for word in ("pano", "octahedral", "mei", "sharp_bicubic", "summed_area", "page_turn", "3de4", "ocam", "embm-2003", "quadratic", "drag"):
             self.assertIn(word, text)
+        # Each word of these keys has a picture of its own.
+        shown = {"pano": ["to", "filter"], "map": ["wrap"], "warp": ["output"], "morph": ["output"], "drape": ["filter", "surface", "shading", "output"],
+                 "figure": ["style", "lighting", "solid", "mapping", "filter", "outlines"]}
+        for operation, keys in shown.items():
+            page = (SOURCES / f"docs/{operation}.md").read_text(encoding="utf-8")
+            for key in keys:
+                words = re.search(rf"^\| `{key}` \|[^|]*\|[^|]*\| ([^|]*) \|", page, re.M)[1].split(", ")
+                self.assertGreater(len(words), 1)
+                for word in words:
+                    self.assertIn(f"words/{operation}_{key}_{word}.png", text)
         pictures = self.pictures_of("docs/reference.html")
         self.assertGreater(len(pictures), 150)
         one_color = []
