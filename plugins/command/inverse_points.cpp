@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace anamorph::command {
 namespace {
 
-constexpr int kStarts = 65, kCells = 64, kSteps = 40;
+constexpr int kStarts = 65, kCells = 32, kSteps = 40;
 // Starts that are kept of each cell, and how many of these are tried for a point.
 constexpr std::size_t kKept = 16, kTries = 4;
-constexpr double kMet = 1e-9, kLeastStride = 1e-6;
+constexpr double kMet = 1e-9, kLeastStride = 1e-3;
 
-double distance(const Point<double>& a, const Point<double>& b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
+double squared_distance(const Point<double>& a, const Point<double>& b) {
+    return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
 }
 
 }  // namespace
@@ -35,21 +35,18 @@ InversePoints::InversePoints(const BlockMap& map, const Box& data, const Size& s
         high = {std::max(high.x, start.source.x), std::max(high.y, start.source.y)};
     }
     m_size = {std::max(high.x - m_low.x, m_met), std::max(high.y - m_low.y, m_met)};
-    std::vector<std::uint32_t> order(m_starts.size());
-    const std::size_t kept = std::min(kKept, order.size());
+    std::vector<std::pair<double, std::uint32_t>> order(m_starts.size());
+    const auto kept = static_cast<std::ptrdiff_t>(std::min(kKept, order.size()));
     for (int j = 0; j < kCells; ++j)
         for (int i = 0; i < kCells; ++i) {
             const Point<double> middle{m_low.x + (i + 0.5) / kCells * m_size.x,
                                        m_low.y + (j + 0.5) / kCells * m_size.y};
-            std::iota(order.begin(), order.end(), std::uint32_t{0});
-            const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
-                const double of_a = distance(m_starts[a].source, middle),
-                             of_b = distance(m_starts[b].source, middle);
-                return of_a < of_b || (of_a == of_b && a < b);
-            };
-            std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept), order.end(),
-                              nearer);
-            m_near.emplace_back(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
+            for (std::uint32_t k = 0; k < order.size(); ++k)
+                order[k] = {squared_distance(m_starts[k].source, middle), k};
+            // Of those that are as far the first.
+            std::nth_element(order.begin(), order.begin() + kept - 1, order.end());
+            std::vector<std::uint32_t>& near = m_near.emplace_back();
+            for (auto at = order.begin(); at != order.begin() + kept; ++at) near.push_back(at->second);
         }
 }
 
@@ -81,7 +78,7 @@ std::optional<Point<double>> InversePoints::newton(const Start& start, const Poi
         const Point<double> tried{std::clamp(at.x + stride * way.x, double(m_data.x0), double(m_data.x1)),
                                   std::clamp(at.y + stride * way.y, double(m_data.y0), double(m_data.y1))};
         const std::optional<Point<double>> seen = source_of(tried);
-        const double now = seen ? distance(*seen, wanted) : HUGE_VAL;
+        const double now = seen ? std::hypot(wanted.x - seen->x, wanted.y - seen->y) : HUGE_VAL;
         if (now < off) {
             at = tried;
             rest = wanted - *seen;
@@ -97,18 +94,16 @@ std::optional<Point<double>> InversePoints::newton(const Start& start, const Poi
 
 std::optional<Point<double>> InversePoints::of(const Point<double>& wanted) const {
     if (m_starts.empty()) return {};
-    const std::vector<std::uint32_t>& near = m_near[cell_of(wanted)];
-    std::array<std::uint32_t, kKept> order{};
-    std::copy(near.begin(), near.end(), order.begin());
-    const std::size_t tries = std::min(kTries, near.size());
-    const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
-        const double of_a = distance(m_starts[a].source, wanted), of_b = distance(m_starts[b].source, wanted);
-        return of_a < of_b || (of_a == of_b && a < b);
-    };
+    std::array<std::pair<double, std::uint32_t>, kKept> order{};
+    std::size_t count = 0;
+    for (const std::uint32_t k : m_near[cell_of(wanted)])
+        order[count++] = {squared_distance(m_starts[k].source, wanted), k};
+    const std::size_t tries = std::min(kTries, count);
     std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(tries),
-                      order.begin() + static_cast<std::ptrdiff_t>(near.size()), nearer);
+                      order.begin() + static_cast<std::ptrdiff_t>(count));
     for (std::size_t k = 0; k < tries; ++k)
-        if (const std::optional<Point<double>> found = newton(m_starts[order[k]], wanted)) return found;
+        if (const std::optional<Point<double>> found = newton(m_starts[order[k].second], wanted))
+            return found;
     return {};
 }
 

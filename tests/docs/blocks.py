@@ -52,7 +52,7 @@ LINES = [
     Line(r"anamorph-figure ", ("command",)),
     Line(r"anamorph-machine ", ("command",)),
     Line(r"(parallel )?anamorph (hash|draw|stmap|join|explain) ", (),
-         why="tests/command/test_pictures.py draws, joins and explains, and runs these of parallel"),
+         why="tests/command/test_pictures.py draws, joins and explains, and runs these of parallel; test_stmap.py draws maps"),
     Line(r"anamorph figure ", (), why="tests/command/test_help.py runs it, and docs_command the same of anamorph-figure"),
     Line(r"anamorph bench ", (), why="tests/python/test_bench.py runs it"),
     Line(r"anamorph new ", (), why="tests/command/test_help.py writes and draws such recipes of every operation"),
