@@ -53,6 +53,23 @@ class Bench(unittest.TestCase):
         u, v = anamorph.Picture(operation, bench.ramp(width, height), **keys).source_points(*np.meshgrid(np.arange(64) + 0.5, np.arange(64) + 0.5))
         np.testing.assert_allclose(bench.numpy_view(64), (u, v), atol=1e-8)
 
+    def test_long_tables_that_end_early_leave_what_was_measured(self):
+        stub = self.folder / "speed_vs_error"
+        stub.write_text("#!/bin/sh\n[ $2 = pano ] || exit 3\nfor file; do :; done\n"
+                        "printf 'case,scheme,threads,max_error_px,ns_per_px\\nview,blocks,1,0.01,2.5\\n' > $file\n", encoding="utf-8")
+        stub.chmod(0o755)
+        os.environ["ANAMORPH_SPEED_VS_ERROR"] = str(stub)
+        try:
+            done = self.run_bench("-o", self.folder / "long", "--size", "64", "--rounds", "1", "--tables")
+        finally:
+            del os.environ["ANAMORPH_SPEED_VS_ERROR"]
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, r"^anamorph bench: .* --op warp ended with the status 3; what was measured before is in .*index.html\n$")
+        self.assertTrue((self.folder / "long/table.csv").exists())
+        page = (self.folder / "long/index.html").read_text(encoding="utf-8")
+        self.assertIn("All schemes of pano", page)
+        self.assertNotIn("All schemes of warp", page)
+
     def test_page_and_plot_show_every_row(self):
         tree = xml.parse(self.folder / "of/plot.svg")
         marks = [node for node in tree.iter() if node.tag.endswith("circle")]

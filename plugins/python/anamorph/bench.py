@@ -148,7 +148,9 @@ def table_program():
 def long_table(program, operation, size, rounds, folder):
     """The table of an operation as a file, and its points."""
     path = folder / f"speed_vs_error_{operation}.csv"
-    subprocess.run([program, "--op", operation, "--size", str(size), "--rounds", str(rounds), "--csv", str(path)], check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run([program, "--op", operation, "--size", str(size), "--rounds", str(rounds), "--csv", str(path)], stdout=subprocess.DEVNULL)
+    if done.returncode:
+        sys.exit(f"anamorph bench: {program} --op {operation} ended with the status {done.returncode}; what was measured before is in {folder / 'index.html'}")
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["threads"] == "1"]
     return [plot.Point(row["case"], row["scheme"], float(row["max_error_px"]), float(row["ns_per_px"])) for row in rows
@@ -219,12 +221,14 @@ def main(arguments=None):
     told = (lambda text: print(text, file=sys.stderr)) if sys.stderr.isatty() else (lambda text: None)
     rows = measure(given.size, given.rounds, told)
     tables = {}
-    for operation in OPERATIONS if given.tables else ():
-        told(f"all schemes of {operation}")
-        tables[operation] = long_table(program, operation, given.size, given.rounds, folder)
     write_whole(folder / "table.csv", csv_text(rows))
     write_whole(folder / "plot.svg", plot.svg(points_of(rows), RESOLUTION))
     write_whole(folder / "index.html", page(rows, given.size, given.rounds, tables))
+    # Each takes long; the page has those that are there.
+    for operation in OPERATIONS if given.tables else ():
+        told(f"all schemes of {operation}")
+        tables[operation] = long_table(program, operation, given.size, given.rounds, folder)
+        write_whole(folder / "index.html", page(rows, given.size, given.rounds, tables))
     print(folder / "index.html")
 
 
