@@ -56,7 +56,7 @@ class Bench(unittest.TestCase):
     def test_long_tables_that_end_early_leave_what_was_measured(self):
         stub = self.folder / "speed_vs_error"
         stub.write_text("#!/bin/sh\n[ $2 = pano ] || exit 3\nfor file; do :; done\n"
-                        "printf 'case,scheme,threads,max_error_px,ns_per_px\\nview,blocks,1,0.01,2.5\\n' > $file\n", encoding="utf-8")
+                        "printf 'case,scheme,threads,max_error_px,ns_per_px\\nview,blocks,1,0.01,2.5\\nview,memory,1,nan,0.5\\n' > $file\n", encoding="utf-8")
         stub.chmod(0o755)
         os.environ["ANAMORPH_SPEED_VS_ERROR"] = str(stub)
         try:
@@ -68,6 +68,8 @@ class Bench(unittest.TestCase):
         self.assertTrue((self.folder / "long/table.csv").exists())
         page = (self.folder / "long/index.html").read_text(encoding="utf-8")
         self.assertIn("All schemes of pano", page)
+        self.assertIn(">memory<", page)
+        self.assertNotRegex(page, r"\bnan\b")
         self.assertNotIn("All schemes of warp", page)
 
     def test_page_and_plot_show_every_row(self):

@@ -12,6 +12,7 @@ import argparse
 import csv
 import html
 import io
+import math
 import os
 import pathlib
 import platform
@@ -153,8 +154,9 @@ def long_table(program, operation, size, rounds, folder):
         sys.exit(f"anamorph bench: {program} --op {operation} ended with the status {done.returncode}; what was measured before is in {folder / 'index.html'}")
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["threads"] == "1"]
-    return [plot.Point(row["case"], row["scheme"], float(row["max_error_px"]), float(row["ns_per_px"])) for row in rows
-            if float(row["ns_per_px"]) > 0]
+    points = [plot.Point(row["case"], row["scheme"], float(row["max_error_px"]), float(row["ns_per_px"])) for row in rows if float(row["ns_per_px"]) > 0]
+    # A copy of the bytes has no error: it stands where there is none.
+    return [point._replace(error=0.0) if math.isnan(point.error) else point for point in points if point.error != math.inf]
 
 
 def write_whole(path, text):
