@@ -210,8 +210,22 @@ with open("three.json", "w") as file:
 refused("features of 3 images: must have those of 2", FileName="three.json")
 refused("the second image has 1 components of unsigned char, but must be as the first, which has 1 of float", None, image(second, np.uint8))
 refused("the second image has 2 components", None, image(second, components=2))
-refused("tol", Tolerance=math.nan)
-refused("pin_border", PinBorder=math.nan)
+for name in ("Shape", "WeightA", "WeightB", "WeightP", "PinBorder", "Tolerance"):
+    refused(f"): {name}=nan: must be", None, None, CHAINS, **{name: math.nan})
+refused("): Color=nan: must be", Color=math.nan, ColorFollowsShape=False)
+# Lines through points that there are not.
+for port, name in enumerate(("first", "second")):
+    for ids, last in (((0, 2), 1), ((0, 1 << 40), 1), ((-1, 0), 1), ((0, 1), None)):
+        beside, cell = lines_of([[(5, 5), (9, 9)]]), vtkCellArray()
+        cell.InsertNextCell(2, ids)
+        beside.SetLines(cell)
+        if last is None:
+            beside.SetPoints(vtkPoints())
+        missing = ids[1] if last and ids[1] > last else ids[0]
+        lines = [CHAINS[0][:1], CHAINS[1][:1]]
+        lines[port] = beside
+        refused(f"line 1 over the {name} image goes through point {missing}: the points are {f'0 to {last}' if last else 'none'}", None, None,
+                lines)
 alone = anamorph.vtkAnamorphImageMorph()
 assert "the first image is not given" in errors_of(alone)
 alone.SetInputDataObject(0, image(first))

@@ -220,9 +220,9 @@ vtk_to_numpy(doubled.GetPointData().GetTCoords())[5] = vtk_to_numpy(doubled.GetP
 assert "must be a grid" in said(warp(doubled))
 nowhere = moved(mesh, lambda i, j: (np.where(i == 0, np.nan, i), j))
 assert "must be finite" in said(warp(nowhere))
-assert "tol" in said(warp(mesh, Tolerance=math.nan))
+assert "): Tolerance=nan: must be" in said(warp(mesh, Tolerance=math.nan))
 assert warp(mesh, Tolerance=-1.0).GetTolerance() == 0
-assert "amount" in said(warp(mesh, Amount=math.nan))
+assert "): Amount=nan: must be" in said(warp(mesh, Amount=math.nan))
 alone = anamorph.vtkAnamorphImageWarp()
 assert "the image is not given" in said(alone)
 alone.SetInputDataObject(0, image())

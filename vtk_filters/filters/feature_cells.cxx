@@ -21,13 +21,19 @@ using Vertices = std::vector<anamorph::Point<double>>;
 
 constexpr const char* kNames[2] = {"first", "second"};
 
-Vertices vertices_of(vtkPolyData* lines, vtkIdType line, vtkImageData* image) {
+/// `name`: the line's and the image's.
+Vertices vertices_of(vtkPolyData* lines, vtkIdType line, vtkImageData* image, const std::string& name) {
     vtkNew<vtkIdList> ids;
     lines->GetLines()->GetCellAtId(line, ids);
+    const vtkIdType count = lines->GetNumberOfPoints();
     Vertices vertices;
     for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
+        const vtkIdType id = ids->GetId(i);
+        if (id < 0 || id >= count)
+            throw Error(name + " goes through point " + std::to_string(id) + ": the points are " +
+                        (count > 0 ? "0 to " + std::to_string(count - 1) : "none"));
         double at[3];
-        lines->GetPoint(ids->GetId(i), at);
+        lines->GetPoint(id, at);
         vertices.push_back(pixel_place(image, image->GetExtent(), at));
     }
     return vertices;
@@ -49,7 +55,9 @@ std::shared_ptr<anamorph::Features> features_of(vtkPolyData* const lines[2], vtk
     for (vtkIdType i = 0; i < count; ++i) {
         const std::string name = "line " + std::to_string(i + 1);
         std::vector<Vertices> vertices;
-        for (int k = 0; k < 2; ++k) vertices.push_back(vertices_of(lines[k], i, images[k]));
+        for (int k = 0; k < 2; ++k)
+            vertices.push_back(
+                vertices_of(lines[k], i, images[k], name + " over the " + kNames[k] + " image"));
         if (vertices[0].size() != vertices[1].size())
             throw Error(name + " has " + std::to_string(vertices[0].size()) +
                         " points over the first image and " + std::to_string(vertices[1].size()) +

@@ -29,4 +29,9 @@ anamorph::Error of_property(const anamorph::Error& error, const std::map<std::st
                            std::string(error.what()).substr(row.size()));
 }
 
+anamorph::Error of_known_property(const anamorph::Error& error,
+                                  const std::map<std::string, std::string>& names) {
+    return names.count(error.parameter()) ? of_property(error, names) : error;
+}
+
 }  // namespace anamorph_vtk

@@ -13,4 +13,8 @@ namespace anamorph_vtk {
 /// `others` says.
 anamorph::Error of_property(const anamorph::Error& error, const std::map<std::string, std::string>& others);
 
+/// The same error, naming the property where the core's name is one of `names`: other errors may be of a line or a file.
+anamorph::Error of_known_property(const anamorph::Error& error,
+                                  const std::map<std::string, std::string>& names);
+
 }  // namespace anamorph_vtk

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphImageMorph.h"
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "feature_cells.h"
 #include "image_texture.h"
 #include "input_times.h"
+#include "property_names.h"
 #include "text_of_file.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -30,6 +32,14 @@ namespace {
 using anamorph::Error;
 
 constexpr int kImages = 2, kPorts = 4;
+
+/// What the core calls our properties.
+const std::map<std::string, std::string>& property_names() {
+    static const std::map<std::string, std::string> names = {
+        {"pin_border", "PinBorder"}, {"t", "Shape"},          {"t_color", "Color"},   {"tol", "Tolerance"},
+        {"weight_a", "WeightA"},     {"weight_b", "WeightB"}, {"weight_p", "WeightP"}};
+    return names;
+}
 
 /// The array of the second image that belongs to one of the first.
 vtkDataArray* array_like(vtkDataArray* first, vtkImageData* image) {
@@ -116,15 +126,18 @@ int vtkAnamorphImageMorph::RequestData(vtkInformation*, vtkInformationVector** i
     vtkImageData* output = vtkImageData::GetData(outputs);
     output->Initialize();
     this->MaxError = 0;
-    return anamorph_vtk::guarded(this,
-                                 [&] {
-                                     this->Draw(inputs,
-                                                outputs->GetInformationObject(0)->Get(
-                                                    vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
-                                                output);
-                                     anamorph_vtk::hand_over_time({inputs, kPorts}, output);
-                                 },
-                                 {output});
+    const auto draw = [&] {
+        try {
+            this->Draw(
+                inputs,
+                outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
+                output);
+            anamorph_vtk::hand_over_time({inputs, kPorts}, output);
+        } catch (const Error& error) {
+            throw anamorph_vtk::of_known_property(error, property_names());
+        }
+    };
+    return anamorph_vtk::guarded(this, draw, {output});
 }
 
 /// Draws the pixels of an extent.

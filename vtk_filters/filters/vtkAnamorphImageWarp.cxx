@@ -11,6 +11,7 @@
 #include "execution.h"
 #include "image_texture.h"
 #include "input_times.h"
+#include "property_names.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -76,17 +77,19 @@ int vtkAnamorphImageWarp::RequestData(vtkInformation*, vtkInformationVector** in
     vtkImageData* output = vtkImageData::GetData(outputs);
     output->Initialize();
     this->MaxError = 0;
-    return anamorph_vtk::guarded(
-        this,
-        [&] {
+    const auto draw = [&] {
+        try {
             this->Draw(
                 vtkImageData::GetData(inputs[0]), this->GetInputArrayToProcess(0, inputs),
                 vtkPointSet::GetData(inputs[1]),
                 outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
                 output);
             anamorph_vtk::hand_over_time({inputs, kPorts}, output);
-        },
-        {output});
+        } catch (const anamorph::Error& error) {
+            throw anamorph_vtk::of_known_property(error, {{"amount", "Amount"}, {"tol", "Tolerance"}});
+        }
+    };
+    return anamorph_vtk::guarded(this, draw, {output});
 }
 
 /// Draws the pixels of an extent.
