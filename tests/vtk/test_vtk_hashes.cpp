@@ -3,9 +3,15 @@
 // (tests/core/test_picture_hash.cpp). Where a formula is right to change them, the test says the new lines.
 #include <gtest/gtest.h>
 #include <vtkAnamorphDeform.h>
+#include <vtkAnamorphDeformImage.h>
 #include <vtkAnamorphDrape.h>
+#include <vtkAnamorphFigureGeometry.h>
 #include <vtkAnamorphFigureImage.h>
+#include <vtkAnamorphFigureOutline.h>
+#include <vtkAnamorphImageMorph.h>
+#include <vtkAnamorphImageWarp.h>
 #include <vtkAnamorphInbetween.h>
+#include <vtkAnamorphPanoramaView.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
@@ -30,6 +36,9 @@ namespace test_vtk_hashes {
 namespace {
 
 using anamorph::PictureHasher;
+
+constexpr std::pair<int, const char*> kPixelTypes[] = {
+    {VTK_UNSIGNED_CHAR, "uint8"}, {VTK_UNSIGNED_SHORT, "uint16"}, {VTK_FLOAT, "float"}};
 
 /// 0 to 1, less than that, in steps of 2^-24, with no help of a library.
 double part(std::uint32_t place, std::uint32_t seed) {
@@ -164,11 +173,9 @@ void inbetween(Lines& lines) {
 
 void drape(Lines& lines) {
     using Drape = vtkAnamorphDrape;
-    const std::pair<int, std::string> kinds[] = {
-        {VTK_UNSIGNED_CHAR, "uint8"}, {VTK_UNSIGNED_SHORT, "uint16"}, {VTK_FLOAT, "float"}};
     int turn = 0;
     for (const int surface : {Drape::CYLINDER, Drape::SPHERE, Drape::TORUS, Drape::WAVES})
-        for (const auto& [type, type_name] : kinds) {
+        for (const auto& [type, type_name] : kPixelTypes) {
             const int filter_kind = std::array{Drape::BILINEAR, Drape::BICUBIC, Drape::ANTIALIAS,
                                                Drape::PYRAMID}[static_cast<std::size_t>(turn++ % 4)];
             vtkNew<Drape> filter;
@@ -188,15 +195,19 @@ void drape(Lines& lines) {
         }
 }
 
+const std::vector<Ball>& balls() {
+    static const std::vector<Ball> two{{{420, 480, -200}, {150, 60, 90}, {1, 0.2, 0.3, 0.1}},
+                                       {{600, 520, -300}, {110, 210, 60}, {0.6, -0.3, 0.2, 0.7}}};
+    return two;
+}
+
 void figure_images(Lines& lines) {
     using Image = vtkAnamorphFigureImage;
-    const std::vector<Ball> balls{{{420, 480, -200}, {150, 60, 90}, {1, 0.2, 0.3, 0.1}},
-                                  {{600, 520, -300}, {110, 210, 60}, {0.6, -0.3, 0.2, 0.7}}};
     for (const int style : {Image::SHADED, Image::DEPTH, Image::BODY_ID})
         for (const int lighting : {Image::RASEL, Image::LAMBERT, Image::BLINN}) {
             if (style != Image::SHADED && lighting != Image::RASEL) continue;
             vtkNew<Image> filter;
-            filter->SetInputData(figures(balls));
+            filter->SetInputData(figures(balls()));
             filter->SetViewSize(80, 64);
             filter->SetStyle(style);
             filter->SetLighting(lighting);
@@ -204,6 +215,129 @@ void figure_images(Lines& lines) {
                         "figure style " + std::to_string(style) + " lighting " + std::to_string(lighting),
                         filter);
         }
+}
+
+void figure_lines(Lines& lines) {
+    vtkNew<vtkAnamorphFigureImage> picture;
+    picture->SetInputData(figures(balls()));
+    picture->SetViewSize(80, 64);
+    picture->SetStyle(vtkAnamorphFigureImage::OUTLINE);
+    add_picture(lines, "figure outline", picture);
+    vtkNew<vtkAnamorphFigureOutline> outline;
+    outline->SetInputData(figures(balls()));
+    add_points(lines, "outline points", outline);
+    for (const int precision : {vtkAlgorithm::SINGLE_PRECISION, vtkAlgorithm::DOUBLE_PRECISION}) {
+        vtkNew<vtkAnamorphFigureGeometry> geometry;
+        geometry->SetInputData(figures(balls()));
+        geometry->SetTolerance(5);
+        geometry->SetOutputPointsPrecision(precision);
+        add_points(lines,
+                   std::string("figure points ") +
+                       (precision == vtkAlgorithm::SINGLE_PRECISION ? "float" : "double"),
+                   geometry);
+    }
+}
+
+/// A mesh of 5 x 4 points over texture(), each some pixels from where it was.
+vtkSmartPointer<vtkPolyData> moved_grid() {
+    vtkNew<vtkPoints> points;
+    points->SetDataType(VTK_DOUBLE);
+    vtkNew<vtkDoubleArray> uv;
+    uv->SetNumberOfComponents(2);
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 5; ++i) {
+            const auto place = static_cast<std::uint32_t>(5 * j + i);
+            const double u = i / 4.0, v = j / 3.0;
+            points->InsertNextPoint(63 * u + 8 * part(place, 51) - 4, 47 * v + 8 * part(place, 52) - 4, 0);
+            uv->InsertNextTuple2(u, v);
+        }
+    auto mesh = vtkSmartPointer<vtkPolyData>::New();
+    mesh->SetPoints(points);
+    mesh->GetPointData()->SetTCoords(uv);
+    return mesh;
+}
+
+void warps(Lines& lines) {
+    using Warp = vtkAnamorphImageWarp;
+    for (const auto& [type, type_name] : kPixelTypes)
+        for (const int interpolation : {Warp::NEAREST, Warp::LINEAR, Warp::CUBIC, Warp::ANTIALIAS})
+            for (const int direction : {Warp::PUSH, Warp::PULL}) {
+                vtkNew<Warp> filter;
+                filter->SetInputDataObject(0, texture(type, type == VTK_FLOAT ? 4 : 3));
+                filter->SetInputDataObject(1, moved_grid());
+                filter->SetDirection(direction);
+                filter->SetInterpolation(interpolation);
+                add_picture(lines,
+                            std::string("warp ") + type_name + " filter " + std::to_string(interpolation) +
+                                (direction == Warp::PUSH ? " push" : " pull"),
+                            filter);
+            }
+}
+
+/// Three lines, each end some pixels from where it was.
+vtkSmartPointer<vtkPolyData> features(std::uint32_t seed) {
+    constexpr double kEnds[][2] = {{12, 10}, {40, 14}, {50, 8}, {56, 38}, {16, 36}, {42, 34}};
+    vtkNew<vtkPoints> points;
+    points->SetDataType(VTK_DOUBLE);
+    vtkNew<vtkCellArray> cells;
+    for (std::uint32_t k = 0; k < 6; ++k) {
+        points->InsertNextPoint(kEnds[k][0] + 4 * part(k, seed), kEnds[k][1] + 4 * part(k, seed + 1), 0);
+        if (k % 2) {
+            const vtkIdType ends[] = {k - 1, k};
+            cells->InsertNextCell(2, ends);
+        }
+    }
+    auto mesh = vtkSmartPointer<vtkPolyData>::New();
+    mesh->SetPoints(points);
+    mesh->SetLines(cells);
+    return mesh;
+}
+
+void morphs(Lines& lines) {
+    using Morph = vtkAnamorphImageMorph;
+    for (const auto& [type, type_name] : kPixelTypes)
+        for (const int interpolation : {Morph::NEAREST, Morph::LINEAR, Morph::CUBIC, Morph::ANTIALIAS}) {
+            vtkNew<Morph> filter;
+            const auto image = texture(type, type == VTK_FLOAT ? 4 : 3);
+            filter->SetInputDataObject(0, image);
+            filter->SetInputDataObject(1, image);
+            filter->SetInputDataObject(2, features(61));
+            filter->SetInputDataObject(3, features(71));
+            filter->SetInterpolation(interpolation);
+            filter->SetShape(0.3);
+            filter->SetColorFollowsShape(false);
+            filter->SetPinBorder(interpolation == Morph::LINEAR ? 1 : 0);
+            filter->SetWeightB(interpolation == Morph::CUBIC ? 1.5 : 2);
+            add_picture(lines, std::string("morph ") + type_name + " filter " + std::to_string(interpolation),
+                        filter);
+        }
+}
+
+void deformed_images(Lines& lines) {
+    using Deform = vtkAnamorphDeformImage;
+    for (const int interpolation : {Deform::NEAREST, Deform::LINEAR, Deform::CUBIC})
+        for (const bool inverse : {false, true}) {
+            vtkNew<Deform> filter;
+            filter->SetInputData(texture(VTK_FLOAT, 3));
+            filter->AddDeformation(30, 20, 15, 18, 6, -4, 0);
+            filter->AddDeformation(44, 30, 12, 14, -3, 5, 0, 1);
+            filter->SetInterpolation(interpolation);
+            filter->SetInverse(inverse);
+            add_picture(
+                lines, "deformed image filter " + std::to_string(interpolation) + (inverse ? " inverse" : ""),
+                filter);
+        }
+}
+
+void views(Lines& lines) {
+    for (const auto& [type, type_name] : kPixelTypes) {
+        vtkNew<vtkAnamorphPanoramaView> filter;
+        filter->SetInputData(texture(type, 3));
+        filter->SetViewSize(64, 48);
+        filter->SetYaw(40);
+        filter->SetPitch(20);
+        add_picture(lines, std::string("view ") + type_name, filter);
+    }
 }
 
 TEST(VtkHashes, EveryInstructionSetComputesTheSame) {
@@ -219,6 +353,11 @@ TEST(VtkHashes, EveryInstructionSetComputesTheSame) {
         inbetween(lines);
         drape(lines);
         figure_images(lines);
+        figure_lines(lines);
+        warps(lines);
+        morphs(lines);
+        deformed_images(lines);
+        views(lines);
         std::string wrong;
         for (const auto& [name, digits] : lines.lines())
             if (const auto line = known.find(name); line == known.end() || line->second != digits)
