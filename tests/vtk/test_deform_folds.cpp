@@ -17,6 +17,7 @@
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -250,6 +251,47 @@ TEST(VtkDeformImage, WhatIsShownComesFromWhereTheInverseSays) {
                 std::fabs(value[0] - p[0]) + std::fabs(value[1] - p[1]) + std::fabs(value[2] - p[2]) < .02;
         }
         EXPECT_GT(same, out->GetNumberOfPoints() / 3);
+    }
+}
+
+TEST(VtkDeformImage, NumbersOfEveryType) {
+    // Of those that VTK's interpolator does not know the values are an int's.
+    const auto image = volume();
+    for (const int type : {VTK_BIT, VTK_LONG, VTK_UNSIGNED_LONG, VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG,
+                           VTK_ID_TYPE, VTK_SIGNED_CHAR, VTK_SHORT}) {
+        SCOPED_TRACE(type);
+        for (const int mode : {0, 1, 2}) {
+            const auto with = vtkSmartPointer<vtkImageData>::New();
+            with->CopyStructure(image);
+            for (const int kind : {type, VTK_INT}) {
+                const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(kind));
+                array->SetName(kind == type ? "numbers" : "int");
+                array->SetNumberOfComponents(type == VTK_BIT ? 1 : 2);
+                array->SetNumberOfTuples(image->GetNumberOfPoints());
+                for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+                    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+                        array->SetComponent(i, c,
+                                            static_cast<double>((i * 7 + c) % (type == VTK_BIT ? 2 : 100)));
+                with->GetPointData()->AddArray(array);
+            }
+            vtkNew<vtkAnamorphDeformImage> filter;
+            Errors warnings(filter, vtkCommand::WarningEvent);
+            filter->SetInputData(with);
+            filter->SetInterpolation(mode);
+            filter->AddDeformation(.3, .4, .5, .5, .08, .05, 0);
+            filter->Update();
+            vtkPointData* const made = filter->GetOutput()->GetPointData();
+            ASSERT_TRUE(made->GetArray("numbers"));
+            EXPECT_EQ(made->GetArray("numbers")->GetDataType(), type == VTK_BIT ? VTK_UNSIGNED_CHAR : type);
+            std::vector<double> expected = numbers(made->GetArray("int"));
+            for (double& value : expected) {  // which cubic may overshoot
+                if (type == VTK_BIT) value = std::min(value, 1.);
+                if (made->GetArray("numbers")->GetDataTypeMin() == 0) value = std::max(value, 0.);
+            }
+            EXPECT_EQ(numbers(made->GetArray("numbers")), expected);
+            EXPECT_GT(*std::max_element(expected.begin(), expected.end()), type == VTK_BIT ? 0 : 50);
+            EXPECT_EQ(warnings.text(), "");
+        }
     }
 }
 

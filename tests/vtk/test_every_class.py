@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is asked of every class of the modules, whichever there are: it prints itself, the same value of any property changes nothing, and without an input it says
-so and goes on. And of every one that makes data: a second update makes nothing again, progress rises to 1, inputs stay as they were, and empty ones do no harm."""
+so and goes on. And of every one that makes data: a second update makes nothing again, progress rises to 1, inputs stay as they were, field arrays of the first are
+handed on, and empty ones do no harm."""
 import os
 
 import anamorph
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkOutputWindow, vtkStringArray, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges
@@ -102,17 +103,22 @@ def check_data(name, made):
     inputs = {port: make() for port, make in ports.items()}
     for port, data in inputs.items():
         made.SetInputDataObject(port, data)
+    if inputs:
+        note = vtkStringArray()
+        note.SetName("note")
+        inputs[0].GetFieldData().AddArray(note)
     if prepare:
         prepare(made)
     seen, runs, errors = [], [], []
     made.AddObserver("ProgressEvent", lambda *_: seen.append(made.GetProgress()))
     made.AddObserver("StartEvent", lambda *_: runs.append(1))
-    note = lambda _, __, text: errors.append(text)
-    note.CallDataType = "string0"
-    made.AddObserver("ErrorEvent", note)
+    listen = lambda _, __, text: errors.append(text)
+    listen.CallDataType = "string0"
+    made.AddObserver("ErrorEvent", listen)
     before = [digest(data) for data in inputs.values()]
     made.Update()
     assert not errors and made.GetOutputDataObject(0), (name, errors)
+    assert not inputs or made.GetOutputDataObject(0).GetFieldData().HasArray("note"), name
     assert seen == sorted(seen) and seen[-1] == 1, (name, seen)
     assert before == [digest(data) for data in inputs.values()], name
     count = len(runs)

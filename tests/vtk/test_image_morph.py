@@ -210,9 +210,10 @@ with open("three.json", "w") as file:
 refused("features of 3 images: must have those of 2", FileName="three.json")
 refused("the second image has 1 components of unsigned char, but must be as the first, which has 1 of float", None, image(second, np.uint8))
 refused("the second image has 2 components", None, image(second, components=2))
-for name in ("Shape", "WeightA", "WeightB", "WeightP", "PinBorder", "Tolerance"):
+refused("): Shape=nan: must be a number from 0 to 1\n", Shape=math.nan)
+for name in ("WeightA", "WeightB", "WeightP", "PinBorder", "Tolerance"):
     refused(f"): {name}=nan: must be", None, None, CHAINS, **{name: math.nan})
-refused("): Color=nan: must be", Color=math.nan, ColorFollowsShape=False)
+refused("): Color=nan: must be a number from 0 to 1\n", Color=math.nan, ColorFollowsShape=False)
 # Lines through points that there are not.
 for port, name in enumerate(("first", "second")):
     for ids, last in (((0, 2), 1), ((0, 1 << 40), 1), ((-1, 0), 1), ((0, 1), None)):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Filters that draw an image of images ask for all of each input, whatever part of theirs is asked for: any pixel may come from anywhere.
+# Filters that draw an image of images ask for all of each input, whatever part or piece of theirs is asked for: any pixel may come from anywhere.
+import os
+
 import anamorph
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -77,6 +79,16 @@ def check(made, images, others):
     assert [source.asked for source in images] == [WHOLE] * len(images), [source.asked for source in images]
     assert [source.asked for source in others] == [(0, 1)] * len(others), [source.asked for source in others]
     assert made.GetOutput().GetExtent() == PART, made.GetOutput().GetExtent()
+    check_piece(made, images)
+
+
+def check_piece(made, images):
+    """As one of several ranks asks."""
+    for source in images:
+        source.asked = None
+        source.Modified()
+    made.UpdatePiece(1, 3, 0)
+    assert [source.asked for source in images] == [WHOLE] * len(images), (made.GetClassName(), [source.asked for source in images])
 
 
 image, mesh = Images(), Mesh()
@@ -92,3 +104,16 @@ morph.SetOtherConnection(images[1].GetOutputPort())
 morph.SetLinesConnection(lines[0].GetOutputPort())
 morph.SetOtherLinesConnection(lines[1].GetOutputPort())
 check(morph, images, lines)
+
+for name in ("DeformImage", "Drape", "PanoramaView", "FigureImage"):
+    image, made = Images(), getattr(anamorph, "vtkAnamorph" + name)()
+    if name == "FigureImage":
+        figures = anamorph.vtkAnamorphFigureReader()
+        figures.SetFileName(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../examples/figures/walker.nudes"))
+        made.SetInputConnection(figures.GetOutputPort())
+        made.SetBumpConnection(image.GetOutputPort())
+    else:
+        made.SetInputConnection(image.GetOutputPort())
+    made.UpdateExtent(PART)
+    assert image.asked == WHOLE and made.GetOutput().GetExtent() == PART, (name, image.asked)
+    check_piece(made, [image])

@@ -54,6 +54,9 @@ anamorph::ControlMesh control_mesh(vtkPointSet* points, vtkImageData* image, con
                     " different v: must be a grid, with a point for every u with every v, at least 2 x 2");
     // Pixels from the upper left, whose centres are at halves.
     const int width = extent[1] - extent[0] + 1, height = extent[3] - extent[2] + 1;
+    if (width < 2 || height < 2)
+        throw Error("the image has " + std::to_string(width) + " x " + std::to_string(height) +
+                    " pixels: must be at least 2 x 2, for a mesh to lie over them");
     anamorph::ControlMesh mesh;
     mesh.columns = static_cast<int>(columns.size()) - 1;
     mesh.rows = static_cast<int>(rows.size()) - 1;

@@ -13,6 +13,7 @@
 #include "execution.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -58,6 +59,7 @@ double draw_image(vtkAlgorithm* filter, const anamorph::SolvedPicture& picture,
     const int* whole = image->GetExtent();
     output->CopyStructure(image);
     output->SetExtent(extent[0], extent[1], extent[2], extent[3], whole[4], whole[5]);
+    output->GetFieldData()->PassData(image->GetFieldData());
     const anamorph::ConstImageView& first = textures[0]->view();
     const auto array =
         vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(textures[0]->type()));

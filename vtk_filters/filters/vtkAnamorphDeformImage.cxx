@@ -12,6 +12,7 @@
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
 #include "deformation_numbers.h"
+#include "drawn_image.h"
 #include "execution.h"
 #include "vtkAnamorphDeformationList.h"
 #include "vtkDataArray.h"
@@ -33,6 +34,28 @@ namespace {
 
 using Executive = vtkStreamingDemandDrivenPipeline;
 
+/// An array as vtkImageInterpolator reads it: bits, and integers of 64 bits, which it does not, as double.
+vtkSmartPointer<vtkDataArray> readable(vtkDataArray* from) {
+    switch (from->GetDataType()) {
+        case VTK_BIT:
+        case VTK_LONG:
+        case VTK_UNSIGNED_LONG:
+        case VTK_LONG_LONG:
+        case VTK_UNSIGNED_LONG_LONG:
+        case VTK_ID_TYPE:
+            break;
+        default:
+            return from;
+    }
+    auto numbers = vtkSmartPointer<vtkDoubleArray>::New();
+    numbers->SetNumberOfComponents(from->GetNumberOfComponents());
+    numbers->SetNumberOfTuples(from->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i)
+        for (int c = 0; c < from->GetNumberOfComponents(); ++c)
+            numbers->SetComponent(i, c, from->GetComponent(i, c));
+    return numbers;
+}
+
 /// An array of the input, how it is read between points, and the one that it makes.
 struct Resampled {
     vtkNew<vtkImageData> image;  ///< with the array as its scalars
@@ -45,21 +68,24 @@ struct Resampled {
     Resampled(vtkImageData* input, vtkDataArray* from, int interpolation, double empty, vtkIdType points)
         : background(empty) {
         image->CopyStructure(input);
-        image->GetPointData()->SetScalars(from);
+        image->GetPointData()->SetScalars(readable(from));
         interpolator->SetInterpolationMode(interpolation);
         interpolator->SetOutValue(empty);
         // Of the distance of points: what rounding puts beyond the last one.
         interpolator->SetTolerance(1e-9);
         interpolator->Initialize(image);
-        to = vtkSmartPointer<vtkDataArray>::Take(from->NewInstance());
+        // Threads write next to each other, and eight bits share a byte.
+        const bool is_bits = from->GetDataType() == VTK_BIT;
+        to = vtkSmartPointer<vtkDataArray>::Take(is_bits ? vtkDataArray::CreateDataArray(VTK_UNSIGNED_CHAR)
+                                                         : from->NewInstance());
         to->SetName(from->GetName());
         to->SetNumberOfComponents(from->GetNumberOfComponents());
         for (int c = 0; c < from->GetNumberOfComponents(); ++c)
             if (from->GetComponentName(c)) to->SetComponentName(c, from->GetComponentName(c));
         to->SetNumberOfTuples(points);
         whole = from->GetDataType() != VTK_FLOAT && from->GetDataType() != VTK_DOUBLE;
-        least = from->GetDataTypeMin();
-        most = from->GetDataTypeMax();
+        least = is_bits ? 0 : from->GetDataTypeMin();
+        most = is_bits ? 1 : from->GetDataTypeMax();
         if (most > 0x1p53) most = std::nextafter(most, 0);  // the largest double that the type still holds
     }
 
@@ -153,9 +179,7 @@ int vtkAnamorphDeformImage::FillInputPortInformation(int, vtkInformation* info) 
 int vtkAnamorphDeformImage::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                 vtkInformationVector*) {
     // Any part may come from anywhere.
-    vtkInformation* input = inputs[0]->GetInformationObject(0);
-    if (input && input->Has(Executive::WHOLE_EXTENT()))
-        input->Set(Executive::UPDATE_EXTENT(), input->Get(Executive::WHOLE_EXTENT()), 6);
+    anamorph_vtk::ask_for_all({inputs, 1});
     return 1;
 }
 

@@ -5,7 +5,8 @@
  *
  * The list moves space as vtkAnamorphDeformTransform has it, W(p) = p + sum_i V_i F((u, v), c_i, a_i) (Oka 1987, eq. 4.1), over the
  * plane of Origin, Axis1 and Axis2: the output at q is the input at W^-1(q), or, with Inverse, at W(q), which undoes it. Extent, spacing, origin and
- * direction are those of the input; all point arrays of numbers are resampled, but for ghosts, and cell arrays are dropped. W^-1 is found to the last places of double.
+ * direction are those of the input; all point arrays of numbers are resampled, but for ghosts, and cell arrays are dropped. Integers of 64 bits
+ * are taken as double has them, and bits become unsigned char. W^-1 is found to the last places of double.
  *
  * What comes from beyond the input is Background. Where the list folds space several points go to one: the output has one
  * of them, or Background where none is found, which GetNumberOfFailures() and the field array "anamorph:failures" count; a warning says where

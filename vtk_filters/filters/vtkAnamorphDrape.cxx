@@ -29,6 +29,7 @@
 #include "anamorph/surface/surface.h"
 #include "attribute_fields.h"
 #include "drape_inputs.h"
+#include "drawn_image.h"
 #include "execution.h"
 #include "image_texture.h"
 #include "input_times.h"
@@ -471,16 +472,7 @@ int vtkAnamorphDrape::RequestInformation(vtkInformation*, vtkInformationVector**
 
 int vtkAnamorphDrape::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                           vtkInformationVector*) {
-    for (int port = 0; port < this->GetNumberOfInputPorts(); ++port) {
-        vtkInformation* input = inputs[port]->GetInformationObject(0);
-        if (!input) continue;
-        // All of it, which is no piece as the pipeline would cut it.
-        input->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
-        input->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
-        input->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-        if (input->Has(Executive::WHOLE_EXTENT()))
-            input->Set(Executive::UPDATE_EXTENT(), input->Get(Executive::WHOLE_EXTENT()), 6);
-    }
+    anamorph_vtk::ask_for_all({inputs, static_cast<std::size_t>(this->GetNumberOfInputPorts())});
     return 1;
 }
 
@@ -542,6 +534,7 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
     output->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
     output->SetOrigin(0, 0, 0);
     output->SetSpacing(1, 1, 1);
+    output->GetFieldData()->PassData(vtkImageData::GetData(inputs[0])->GetFieldData());
     const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(drawn.type));
     array->SetName(drawn.name);
     array->SetNumberOfComponents(drawn.components);

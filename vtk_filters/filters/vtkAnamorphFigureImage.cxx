@@ -15,6 +15,7 @@
 #include "anamorph/operation/figure_look.h"
 #include "anamorph/parameter/parameter.h"
 #include "attribute_fields.h"
+#include "drawn_image.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"
@@ -221,15 +222,7 @@ int vtkAnamorphFigureImage::RequestInformation(vtkInformation*, vtkInformationVe
 int vtkAnamorphFigureImage::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                 vtkInformationVector*) {
     // A part of the image shows all bodies that are there.
-    if (vtkInformation* input = inputs[0]->GetInformationObject(0)) {
-        input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-        input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-        input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    }
-    vtkInformation* heights = inputs[1]->GetInformationObject(0);
-    if (heights && heights->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-        heights->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-                     heights->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+    anamorph_vtk::ask_for_all({inputs, 2});
     return 1;
 }
 

@@ -9,6 +9,7 @@
 #include "anamorph/morph/features_file.h"
 #include "anamorph/morph/morph.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/parameter/parameter.h"
 #include "drawn_image.h"
 #include "execution.h"
 #include "feature_cells.h"
@@ -35,9 +36,11 @@ constexpr int kImages = 2, kPorts = 4;
 
 /// What the core calls our properties.
 const std::map<std::string, std::string>& property_names() {
-    static const std::map<std::string, std::string> names = {
-        {"pin_border", "PinBorder"}, {"t", "Shape"},          {"t_color", "Color"},   {"tol", "Tolerance"},
-        {"weight_a", "WeightA"},     {"weight_b", "WeightB"}, {"weight_p", "WeightP"}};
+    static const std::map<std::string, std::string> names = {{"pin_border", "PinBorder"},
+                                                             {"tol", "Tolerance"},
+                                                             {"weight_a", "WeightA"},
+                                                             {"weight_b", "WeightB"},
+                                                             {"weight_p", "WeightP"}};
     return names;
 }
 
@@ -164,6 +167,12 @@ void vtkAnamorphImageMorph::Draw(vtkInformationVector** inputs, const int* exten
     // Nothing moves where the border alone is held.
     if (features->size() == 0 && features->border_weight() == 0) features->pin_border(1);
 
+    const auto check_part = [](const char* name, double part) {
+        if (!(part >= 0 && part <= 1))
+            throw Error(name, anamorph::shortest(part), "must be a number from 0 to 1");
+    };
+    check_part("Shape", this->Shape);
+    if (!this->ColorFollowsShape) check_part("Color", this->Color);
     anamorph::MorphOptions options;
     options.tol = this->Tolerance;
     options.filter = anamorph_vtk::filter_of(this->Interpolation);

@@ -10,6 +10,7 @@
 #include "anamorph/operation/rows.h"
 #include "anamorph/projector/projector_rows.h"
 #include "attribute_fields.h"
+#include "drawn_image.h"
 #include "execution.h"
 #include "image_texture.h"
 #include "vtkDataArray.h"
@@ -233,9 +234,7 @@ int vtkAnamorphPanoramaView::RequestInformation(vtkInformation*, vtkInformationV
 int vtkAnamorphPanoramaView::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                  vtkInformationVector*) {
     // Any part of a view may show any part of the panorama.
-    vtkInformation* input = inputs[0]->GetInformationObject(0);
-    if (input && input->Has(Executive::WHOLE_EXTENT()))
-        input->Set(Executive::UPDATE_EXTENT(), input->Get(Executive::WHOLE_EXTENT()), 6);
+    anamorph_vtk::ask_for_all({inputs, 1});
     return 1;
 }
 
@@ -266,6 +265,7 @@ void vtkAnamorphPanoramaView::Draw(vtkInformationVector** inputs, const int* ext
     output->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
     output->SetOrigin(0, 0, 0);
     output->SetSpacing(1, 1, 1);
+    output->GetFieldData()->PassData(vtkImageData::GetData(inputs[0])->GetFieldData());
     const int components = view.components(channels);
     const auto array = vtkSmartPointer<vtkDataArray>::Take(
         vtkDataArray::CreateDataArray(view.shows_color() ? panorama.type() : VTK_FLOAT));

@@ -519,6 +519,7 @@ int vtkAnamorphReliefSource::RequestData(vtkInformation*, vtkInformationVector**
         anamorph_vtk::Execution execution(this);
         execution.progress(0.5);
         output->SetExtent(asked);
+        output->GetFieldData()->PassData(image->GetFieldData());
         const Relief relief{axes, plane, heights};
         if (this->OutputPointsPrecision == DOUBLE_PRECISION)
             relief.write<double>(piece, this->GenerateNormals, output, execution);
