@@ -11,7 +11,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData, vtkTable
-from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
@@ -323,6 +323,33 @@ def check_grid(rank, ranks):
         assert len(whole) == 13 * 11 * 8 and part and part.items() <= whole.items(), (len(whole), len(part))
 
 
+def check_images(rank, ranks):
+    """Every rank draws its part of an image as it is in the whole."""
+    def pixels_of(name, piece, pieces):
+        wavelet, made = vtkRTAnalyticSource(), getattr(anamorph, "vtkAnamorph" + name)()
+        wavelet.SetWholeExtent(-16, 16, -12, 12, 0, 0)
+        made.SetInputConnection(wavelet.GetOutputPort())
+        if name == "DeformImage":
+            made.AddDeformation(0, 0, 6, 6, 3, 2, 0)
+        elif name == "ImageMorph":
+            made.SetOtherConnection(wavelet.GetOutputPort())
+        elif name == "ImageWarp":
+            made.SetMeshConnection(plane.GetOutputPort())
+        else:
+            made.SetViewSize(40, 30)
+        made.UpdatePiece(piece, pieces, 0)
+        image, values = made.GetOutput(), made.GetOutput().GetPointData().GetScalars()
+        return {image.GetPoint(i): values.GetTuple(i) for i in range(image.GetNumberOfPoints())}
+    plane = vtkPlaneSource()
+    plane.SetOrigin(-16, -12, 0)
+    plane.SetPoint1(14, -11, 0)
+    plane.SetPoint2(-15, 13, 0)
+    plane.SetResolution(4, 3)
+    for name in ("DeformImage", "Drape", "ImageMorph", "ImageWarp", "PanoramaView"):
+        whole, part = pixels_of(name, 0, 1), pixels_of(name, rank, ranks)
+        assert len(whole) > 800 and part and part.items() <= whole.items(), (name, len(whole), len(part))
+
+
 def main():
     controller = vtkMultiProcessController.GetGlobalController()
     rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
@@ -347,6 +374,7 @@ def main():
             assert moved == whole[point], (point, moved, whole[point])
     check_formula(mesh, part)
     check_grid(rank, ranks)
+    check_images(rank, ranks)
     check_painted(mesh, part, controller)
     check_baked(rank, ranks)
     check_baked_by_pieces(rank, ranks)
