@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian's compiler for another processor (ANAMORPH_CROSS, as Debian calls that machine's triplet), and the libraries that tests/cross.sh
-# unpacks.
+# unpacks (ANAMORPH_CROSS_ROOT: a folder, or several as a list).
 set(triplet $ENV{ANAMORPH_CROSS})
 string(REGEX REPLACE "-.*" "" processor ${triplet})
 set(CMAKE_SYSTEM_NAME Linux)
@@ -20,6 +20,13 @@ else()
 endif()
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--dynamic-linker=/usr/${triplet}/lib/${loader} -Wl,-rpath,/usr/${triplet}/lib")
 set(CMAKE_FIND_ROOT_PATH $ENV{ANAMORPH_CROSS_ROOT})
+# What those libraries need themselves is there, too.
+foreach(root IN LISTS CMAKE_FIND_ROOT_PATH)
+    foreach(folder usr/lib lib)
+        string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -Wl,-rpath-link,${root}/${folder}/${CMAKE_LIBRARY_ARCHITECTURE}")
+        string(APPEND CMAKE_SHARED_LINKER_FLAGS_INIT " -Wl,-rpath-link,${root}/${folder}/${CMAKE_LIBRARY_ARCHITECTURE}")
+    endforeach()
+endforeach()
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)

@@ -55,6 +55,7 @@ step build-paraview build_paraview -DANAMORPH_NIGHTLY=ON
 step test-paraview-long run_tests paraview -L nightly
 step farm tests/farm.sh build/release
 step arm64 tests/cross.sh arm64 build/arm64
+step arm64-vtk tests/cross.sh arm64 build/arm64 vtk
 step avx512 tests/cross.sh avx512 build/avx512
 step i386 tests/cross.sh i386 build/i386 all
 step wasm tests/cross.sh wasm build/wasm

@@ -365,7 +365,9 @@ TEST(VtkHashes, EveryInstructionSetComputesTheSame) {
         EXPECT_EQ(wrong, "");
         EXPECT_EQ(known.size(), lines.lines().size());
     });
-    EXPECT_GE(sets, 2);
+#if defined(__x86_64__) || defined(__i386__)
+    EXPECT_GE(sets, 2);  // arm64 has one
+#endif
 }
 
 }  // namespace
