@@ -37,6 +37,10 @@ anamorph::ControlMesh control_mesh(vtkPointSet* points, vtkImageData* image, con
     const auto count = static_cast<std::size_t>(points->GetNumberOfPoints());
     if (!coordinates || coordinates->GetNumberOfComponents() < 2)
         throw Error("the mesh has no texture coordinates: its points must have an array of them, u and v");
+    if (coordinates->GetNumberOfTuples() != points->GetNumberOfPoints())
+        throw Error("the mesh has " + std::to_string(coordinates->GetNumberOfTuples()) +
+                    " texture coordinates: must have one for each of its " + std::to_string(count) +
+                    " points");
     std::vector<double> across, down;
     for (std::size_t i = 0; i < count; ++i) {
         const auto id = static_cast<vtkIdType>(i);

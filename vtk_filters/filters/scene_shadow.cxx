@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cell_corners.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
@@ -15,6 +16,7 @@
 namespace anamorph_vtk {
 
 vtkSmartPointer<vtkPolyData> triangulated(vtkPolyData* mesh) {
+    check_corners(mesh);
     vtkNew<vtkPolyData> copy;
     copy->ShallowCopy(mesh);
     vtkNew<vtkTriangleFilter> filter;

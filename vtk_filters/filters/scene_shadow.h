@@ -17,7 +17,7 @@ namespace anamorph_vtk {
 /// A list of triangles: three corners each.
 using TriangleList = std::vector<glm::dvec3>;
 
-/// The polygons of a mesh as triangles, with what belongs to its points and cells.
+/// The polygons of a mesh as triangles, with what belongs to its points and cells. Throws Error of cells whose corners are no points.
 vtkSmartPointer<vtkPolyData> triangulated(vtkPolyData* mesh);
 /// Calls body(its three points) for every triangle of a mesh, as triangulated() makes it, that is not hidden
 /// (blanked).

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "anamorph/error.h"
+#include "cell_corners.h"
 #include "error_texts.h"
 #include "vtkFieldData.h"
 #include "vtkLinearSubdivisionFilter.h"
@@ -25,6 +26,7 @@ vtkSmartPointer<vtkPointSet> subdivided(vtkPointSet* mesh, int times) {
         throw anamorph::Error("Subdivisions", std::to_string(times), why);
     };
     if (!has_polygons_alone(mesh)) refuse("the surface must be of polygons alone, or Subdivisions 0");
+    check_corners(mesh);
     vtkNew<vtkTriangleFilter> triangles;
     triangles->SetInputData(mesh);
     triangles->Update();

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "anamorph/error.h"
+#include "cell_corners.h"
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
@@ -194,6 +195,7 @@ SurfaceNormals::SurfaceNormals(vtkPointSet* mesh, const std::vector<glm::dvec2>&
     if (plane) m_plane = *plane;
     m_exact = plane && normals;
     if (m_exact) return;
+    check_corners(mesh);
     m_mesh = vtkSmartPointer<vtkPointSet>::Take(mesh->NewInstance());
     m_mesh->CopyStructure(mesh);
     m_ghosts = ghosts_of(mesh);

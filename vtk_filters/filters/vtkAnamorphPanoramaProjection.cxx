@@ -16,6 +16,7 @@
 #include "anamorph/projector/projected_triangles.h"
 #include "anamorph/projector/projector_rows.h"
 #include "automatic_plane.h"
+#include "cell_corners.h"
 #include "execution.h"
 #include "input_times.h"
 #include "painted_mesh.h"
@@ -36,6 +37,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
@@ -57,6 +59,7 @@ vtkSmartPointer<vtkPolyData> triangles_of(vtkDataSet* data) {
     if (!surface && data->GetNumberOfCells() > 0) {
         const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
         copy->ShallowCopy(data);
+        if (auto* points = vtkPointSet::SafeDownCast(data)) anamorph_vtk::check_corners(points);
         vtkNew<vtkDataSetSurfaceFilter> filter;
         filter->SetInputData(copy);
         filter->Update();
