@@ -37,7 +37,7 @@
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
-#include "vtkVersion.h"
+#include "vtkVersionMacros.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphInbetween);
 
@@ -156,7 +156,11 @@ Arrays topology_arrays(vtkPointSet* surface) {
         append_cells(poly_data->GetPolys(), arrays);
         append_cells(poly_data->GetStrips(), arrays);
     } else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(surface)) {
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+        auto* types = vtkUnsignedCharArray::SafeDownCast(grid->GetCellTypes());
+#else
         vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+#endif
         if (!types || !grid->GetCells()) return {};
         const unsigned char* type = types->GetPointer(0);
         if (std::find(type, type + types->GetNumberOfValues(), VTK_POLYHEDRON) !=
