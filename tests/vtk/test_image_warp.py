@@ -202,6 +202,16 @@ for time in (2, 0, 1):
     compare(pixels(timed.GetOutput())[:, :, 0], I - 5 * time, J)
 
 
+# Components keep their names.
+named = image()
+pair = numpy_to_vtk(np.zeros((named.GetNumberOfPoints(), 2), np.float32), deep=True)
+pair.SetComponentName(1, "opacity")
+named.GetPointData().SetScalars(pair)
+made = warp(mesh, named)
+made.Update()
+assert [made.GetOutput().GetPointData().GetScalars().GetComponentName(c) for c in (0, 1)] == [None, "opacity"]
+
+
 # What is refused, in words.
 def said(warped):
     return errors_of(warped, warped.Update)

@@ -54,7 +54,7 @@ void ask_for_all(std::span<vtkInformationVector* const> inputs) {
 }
 
 double draw_image(vtkAlgorithm* filter, const anamorph::SolvedPicture& picture,
-                  std::span<const ImageTexture* const> textures, vtkImageData* image, const char* name,
+                  std::span<const ImageTexture* const> textures, vtkImageData* image, vtkDataArray* like,
                   const int* extent, vtkImageData* output) {
     const int* whole = image->GetExtent();
     output->CopyStructure(image);
@@ -63,8 +63,10 @@ double draw_image(vtkAlgorithm* filter, const anamorph::SolvedPicture& picture,
     const anamorph::ConstImageView& first = textures[0]->view();
     const auto array =
         vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(textures[0]->type()));
-    array->SetName(name);
+    array->SetName(like->GetName());
     array->SetNumberOfComponents(first.channels);
+    for (int c = 0; c < first.channels; ++c)
+        if (const char* const component = like->GetComponentName(c)) array->SetComponentName(c, component);
     array->SetNumberOfTuples(output->GetNumberOfPoints());
     output->GetPointData()->SetScalars(array);
 

@@ -8,6 +8,7 @@
 #include "image_texture.h"
 
 class vtkAlgorithm;
+class vtkDataArray;
 class vtkInformationVector;
 
 namespace anamorph {
@@ -23,10 +24,10 @@ anamorph::Filter filter_of(int interpolation);
 /// for one of several ranks.
 void ask_for_all(std::span<vtkInformationVector* const> inputs);
 
-/// Draws the pixels of an extent, which is not empty, of a picture of textures as an output like `image`, the first of them. Its scalars are of the first texture's
-/// type, called `name`, and its field arrays, beside those of `image`, say what was reached. Returns the proven bound. Throws Error.
+/// Draws the pixels of an extent, which is not empty, of a picture of textures as an output like `image`, the first of them. Its scalars are of the type, and have
+/// the names, of `like`, the first texture's array; its field arrays, beside those of `image`, say what was reached. Returns the proven bound. Throws Error.
 double draw_image(vtkAlgorithm* filter, const anamorph::SolvedPicture& picture,
-                  std::span<const ImageTexture* const> textures, vtkImageData* image, const char* name,
+                  std::span<const ImageTexture* const> textures, vtkImageData* image, vtkDataArray* like,
                   const int* extent, vtkImageData* output);
 
 }  // namespace anamorph_vtk

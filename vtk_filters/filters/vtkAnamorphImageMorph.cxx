@@ -185,6 +185,5 @@ void vtkAnamorphImageMorph::Draw(vtkInformationVector** inputs, const int* exten
         anamorph::solved(anamorph::morphed_picture(features, {a.size(), b.size()}, a.size(), options));
 
     const anamorph_vtk::ImageTexture* const textures[] = {&a, &b};
-    this->MaxError =
-        anamorph_vtk::draw_image(this, *picture, textures, images[0], given->GetName(), extent, output);
+    this->MaxError = anamorph_vtk::draw_image(this, *picture, textures, images[0], given, extent, output);
 }

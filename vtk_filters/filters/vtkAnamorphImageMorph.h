@@ -11,7 +11,7 @@
  * order, each with as many points. Any filter or widget may move them. In their place FileName may name a file of features. Without either
  * the images are blended as they are.
  *
- * Extent, spacing, origin and direction are those of the first image, and so are type and name of the array. An image of another
+ * Extent, spacing, origin and direction are those of the first image, and so are type and names of the array. An image of another
  * size is taken to show the same, scaled. The field array "anamorph:max_error" says what was reached.
  */
 #ifndef vtkAnamorphImageMorph_h

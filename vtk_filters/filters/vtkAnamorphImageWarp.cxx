@@ -108,6 +108,5 @@ void vtkAnamorphImageWarp::Draw(vtkImageData* input, vtkDataArray* given, vtkPoi
         anamorph::warped_picture({"the mesh", control}, image.size(), image.size(), options));
 
     const anamorph_vtk::ImageTexture* const textures[] = {&image};
-    this->MaxError =
-        anamorph_vtk::draw_image(this, *picture, textures, input, given->GetName(), extent, output);
+    this->MaxError = anamorph_vtk::draw_image(this, *picture, textures, input, given, extent, output);
 }

@@ -11,7 +11,7 @@
  * an image are; where they are, in the image's own coordinates, says where that goes. So a plane on the image's bounds warps nothing, and whatever moves it,
  * vtkAnamorphDeform or any other filter, moves the image. Off the image's plane moves nothing.
  *
- * Extent, spacing, origin and direction are those of the image, and so are type and name of the array. Beyond the outer lines of the
+ * Extent, spacing, origin and direction are those of the image, and so are type and names of the array. Beyond the outer lines of the
  * mesh the map goes on linearly; what comes from beyond the image is 0. Field arrays say what was reached: "anamorph:max_error", and
  * "anamorph:folded_fraction", how much of the picture lies where the mesh is folded.
  */
