@@ -422,7 +422,8 @@ TEST(PanoramaTruth, NoBoundHangsOnACost) {
                      {&PlanCosts::bound, &PlanCosts::further_bound, &PlanCosts::credit,
                       &PlanCosts::bound_pixels, &PlanCosts::polynomial, &PlanCosts::rounding,
                       &PlanCosts::double_pixel, &PlanCosts::direct_trial, &PlanCosts::direct_pixel,
-                      &PlanCosts::precise_pixel})
+                      &PlanCosts::precise_pixel, &PlanCosts::apart_pixel, &PlanCosts::precise_bound,
+                      &PlanCosts::block})
                     for (const double times : {0.25, 4.0}) {
                         scene.costs = PlanCosts{};
                         *scene.costs.*which *= times;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/error.h"
 
 namespace anamorph::test_projection_groups {

@@ -13,6 +13,7 @@
 #include <set>
 #include <tuple>
 
+#include "anamorph/chart/chart_formulas.h"
 #include "panorama_oracle.h"
 #include "projection_cases.h"
 

@@ -28,7 +28,10 @@ class TextMap : public PlaneMap<TextMap> {
                                       .rounding = 45,
                                       .direct_trial = 60,
                                       .direct_pixel = 0.45,
-                                      .precise_pixel = 1};
+                                      .precise_pixel = 1,
+                                      .apart_pixel = 1,
+                                      .precise_bound = 400,
+                                      .block = 0};
 
     /// `picture`: the size that the formula speaks of. `target`: the pixels that the picture has.
     TextMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source)

@@ -192,6 +192,13 @@ class BoxBounds {
                      J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
     }
 
+    /// The texels that a pixel in the middle of a box has.
+    double texels_of_pixel(const Box& box) const {
+        const Point<Jet1<double>> p = linear_of(box, place_about(box).local);
+        const double area = half(box.width()) * half(box.height());
+        return area > 0 ? std::fabs(p.x.c[1] * p.y.c[2] - p.x.c[2] * p.y.c[1]) / area : 0;
+    }
+
     /// The rounding of the blocks in a box, of up to a given size; or of values, for a size of 0.
     double rounding_over(const Box& box, double half_width, double half_height, const Local& local) const {
         const auto t = taylor_rounding(m_map, across(box), down(box), half_width, half_height, local);

@@ -12,6 +12,7 @@ namespace anamorph::plan_detail {
 struct Fallback {
     enum Kind { unknown, exact, direct_in_float, direct_in_double } kind = unknown;
     double saving = 1;  ///< what a polynomial's pixel saves over one of these, in exact pixels
+    double block = 0;   ///< what a polynomial's block costs beyond its pixels, in exact pixels
 
     bool is_direct() const { return kind >= direct_in_float; }
 };
@@ -28,6 +29,10 @@ class CostModel {
 
     const PlanCosts& costs() const { return m_costs; }
     const Fallback& fallback() const { return m_fallback; }
+    /// A bound over a box that is being settled.
+    double bound() const {
+        return m_fallback.kind == Fallback::direct_in_double ? m_costs.precise_bound : m_costs.bound;
+    }
     void set_fallback(const Fallback& fallback) { m_fallback = fallback; }
 
     bool worth_a_polynomial() const {
@@ -40,7 +45,7 @@ class CostModel {
 
     /// Pays for bounds. What polynomials in all cost is paid for by what they save over the fallback.
     void pay_for_bounds(std::size_t at_once) {
-        pay(m_costs.bound + m_costs.further_bound * (static_cast<double>(at_once) - 1));
+        pay(bound() + m_costs.further_bound * (static_cast<double>(at_once) - 1));
     }
     void pay_for_rounding() { pay(m_costs.rounding); }
     /// Pays for a polynomial. `alone`: with a bound of its own rounding.
@@ -52,7 +57,7 @@ class CostModel {
     /// Enters a box that became a polynomial's.
     void save_polynomial(const Box& box) {
         const int pixels = pixels_of(box);
-        if (m_fallback.is_direct()) m_over_direct += pixels;
+        if (m_fallback.is_direct()) m_over_direct += pixels - m_fallback.block / m_fallback.saving;
         m_balance += pixels * (m_fallback.is_direct() ? 1 - m_fallback.saving : 1);
     }
     void pay_for_double(const Box& box) { pay(m_costs.double_pixel * pixels_of(box)); }

@@ -20,6 +20,10 @@ struct PlanCosts {
     double direct_trial = 130;   ///< looking whether direct blocks hold the tolerance
     double direct_pixel = 0.3;   ///< what a polynomial's pixel saves where it could be direct, in float
     double precise_pixel = 0.9;  ///< what a polynomial's pixel saves where it could be direct, in double
+    // Beside direct pixels in double, polynomials are of small blocks and save little, so that costs are to be closer there:
+    double apart_pixel = 0.62;  ///< precise_pixel where texels lie far apart: memory is waited for meanwhile
+    double precise_bound = 1000;  ///< a bound, of charts that need angles
+    double block = 30;            ///< what drawing a polynomial's block costs beyond its pixels
 };
 
 /// The costs of a map: its own, or the defaults.

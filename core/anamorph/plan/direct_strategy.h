@@ -11,6 +11,9 @@
 
 namespace anamorph::plan_detail {
 
+// Where a pixel has more texels than this, what it reads lies apart from what its neighbours read.
+inline constexpr double kTexelsApart = 12;
+
 /// Tries direct blocks; what they are made of is found later, for those that are placed.
 template <FormulaMap Map>
 class DirectStrategy {
@@ -47,7 +50,7 @@ class DirectStrategy {
     Trial try_in_double(const Box& box) {
         const Middle middle = read_middle<double>(box);
         if (!m_read_as_written) return {};
-        return middle.error <= m_goal ? in_double() : Trial{{}, middle.error};
+        return middle.error <= m_goal ? in_double(middle.box) : Trial{{}, middle.error};
     }
     Trial try_in_float(const Box& box) {
         const PlanCosts& costs = m_costs.costs();
@@ -58,9 +61,13 @@ class DirectStrategy {
         if (serves_in_float(middle.box, middle.error, m_goal) && holds_in_small_parts(middle.box))
             return {{Fallback::direct_in_float, costs.precise_pixel}};
         if (middle.error < HUGE_VAL) middle.error = error_in<double>(middle.box);
-        return middle.error <= m_goal ? in_double() : Trial{{}, middle.error};
+        return middle.error <= m_goal ? in_double(middle.box) : Trial{{}, middle.error};
     }
-    Trial in_double() const { return {{Fallback::direct_in_double, m_costs.costs().precise_pixel}}; }
+    Trial in_double(const Box& middle) const {
+        const PlanCosts& costs = m_costs.costs();
+        const bool apart = m_bounds.texels_of_pixel(middle) > kTexelsApart;
+        return {{Fallback::direct_in_double, apart ? costs.apart_pixel : costs.precise_pixel, costs.block}};
+    }
 
     struct Middle {
         Box box;

@@ -130,7 +130,7 @@ class PolynomialStrategy {
             const bool of_one = p.width <= kBlockWidth && p.height <= kBlockHeight;
             if (tail <= (of_one ? kTailShare : kPartShare) * m_tol) return p;
             p.are = p.width <= kFloor && p.height <= kFloor ? Parts::left : Parts::renewed;
-            const bool dear = parts(0, tail) * costs().polynomial > 2 * costs().bound;
+            const bool dear = parts(0, tail) * costs().polynomial > 2 * m_account.bound();
             if (p.are == Parts::left || (dear && p.width * p.height <= kBlockWidth * kBlockHeight)) return p;
             bool vertical_cut = tail_over(0.5 * hx, hy, bound) <= tail_over(hx, 0.5 * hy, bound);
             if (vertical_cut ? p.width <= kFloor : p.height <= kFloor) vertical_cut = !vertical_cut;
@@ -236,7 +236,8 @@ class PolynomialStrategy {
         const Fit fit(in_middle);
         const double error = is_cheaper_in_double(middle, fit) ? 0 : fit.error;
         const double blocks = pixels_of(box) / double{kBlockWidth * kBlockHeight};
-        return blocks * (parts(error, tail) - parts(error, least)) * costs().polynomial <= 2 * costs().bound;
+        return blocks * (parts(error, tail) - parts(error, least)) * costs().polynomial <=
+               2 * m_account.bound();
     }
 
     /// The number of parts into which a block is cut until a cubic holds the tolerance: its error falls with
