@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include "anamorph/error.h"
 #include "anamorph/figure/body/rotation.h"
@@ -58,10 +60,17 @@ int nearest_whole(double value) {
     return static_cast<int>(rounded);
 }
 
-std::string row_of(const std::vector<int>& numbers) {
-    std::string text;
-    for (const int number : numbers) text += (text.empty() ? "" : " ") + std::to_string(number);
-    return text + "\n";
+/// Appends numbers as a row.
+void add_row(std::initializer_list<int> numbers, std::string& text) {
+    constexpr std::size_t kMostOfOne = 12;
+    char row[6 * kMostOfOne];
+    char* end = row;
+    for (const int number : numbers) {
+        end = std::to_chars(end, row + sizeof row, number).ptr;
+        *end++ = ' ';
+    }
+    end[-1] = '\n';
+    text.append(row, end);
 }
 
 /// The whole numbers of a text, whatever blanks and lines stand between them.
@@ -134,20 +143,21 @@ EllipseFrame ellipses_of(const FigureFrame& frame, bool hide, const ParallelFor&
 }
 
 std::string ellipse_text(const EllipseFrame& frame) {
-    std::string text = row_of({static_cast<int>(frame.ellipses.size()), frame.number});
+    std::string text;
+    add_row({static_cast<int>(frame.ellipses.size()), frame.number}, text);
+    std::vector<std::pair<int, int>> arcs;
     for (const FlatEllipse& e : frame.ellipses) {
-        std::string arcs;
-        int count = 0;
+        arcs.clear();
         for (const auto& [begin, end] : e.hidden) {
             const int from = nearest_whole(kTenthsOfDegree * begin),
                       to = nearest_whole(kTenthsOfDegree * end);
-            if (from == to) continue;
-            arcs += row_of({from, to});
-            ++count;
+            if (from != to) arcs.emplace_back(from, to);
         }
-        text += row_of({nearest_whole(e.center.x), nearest_whole(e.center.y), nearest_whole(e.minor),
-                        nearest_whole(e.major), nearest_whole(kTenthsOfDegree * e.phi), count}) +
-                arcs;
+        add_row(
+            {nearest_whole(e.center.x), nearest_whole(e.center.y), nearest_whole(e.minor),
+             nearest_whole(e.major), nearest_whole(kTenthsOfDegree * e.phi), static_cast<int>(arcs.size())},
+            text);
+        for (const auto& [from, to] : arcs) add_row({from, to}, text);
     }
     return text;
 }

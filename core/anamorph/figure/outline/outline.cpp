@@ -117,11 +117,12 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
     constexpr std::size_t batch = 16;
     parallel_for(static_cast<std::int64_t>((bodies.size() + batch - 1) / batch), [&](std::int64_t k) {
         const std::size_t first = static_cast<std::size_t>(k) * batch;
+        std::vector<int> near_by;
         for (std::size_t i = first; i < std::min(first + batch, bodies.size()); ++i) {
             result.bodies[i] = limb_of(seen[i], view);
-            if (seen[i].seen() && !is_outside(seen[i], view, options.window))
-                add_arcs(result.bodies[i], seen[i], i, seen,
-                         options.hide ? overlaps.with(boxes[i]) : std::vector<int>(), view);
+            if (!seen[i].seen() || is_outside(seen[i], view, options.window)) continue;
+            if (options.hide) overlaps.find(boxes[i], near_by);
+            add_arcs(result.bodies[i], seen[i], i, seen, near_by, view);
         }
     });
     // Limbs tell at once where a tolerance asks for too many chords, crossings late.
@@ -136,6 +137,8 @@ Outlines outlines(const FigureFrame& frame, const View& view, OutlineOptions opt
                   const ParallelFor& parallel_for) {
     std::vector<Ellipsoid> shapes;
     options.names.clear();
+    shapes.reserve(frame.bodies.size());
+    options.names.reserve(frame.bodies.size());
     for (const Body& body : frame.bodies) {
         shapes.push_back(body.shape);
         options.names.push_back(body.name);

@@ -205,6 +205,7 @@ Overlaps::Overlaps(const std::vector<SeenBody>& bodies) : m_bodies(bodies), m_by
     std::stable_sort(m_by_left.begin(), m_by_left.end(), [&](int a, int b) {
         return bodies[static_cast<std::size_t>(a)].low.x < bodies[static_cast<std::size_t>(b)].low.x;
     });
+    m_right.reserve(bodies.size());
     double right = -HUGE_VAL;
     for (const int i : m_by_left) {
         right = std::max(right, bodies[static_cast<std::size_t>(i)].high.x);
@@ -212,8 +213,8 @@ Overlaps::Overlaps(const std::vector<SeenBody>& bodies) : m_bodies(bodies), m_by
     }
 }
 
-std::vector<int> Overlaps::with(const ScreenBox& box) const {
-    std::vector<int> found;
+void Overlaps::find(const ScreenBox& box, std::vector<int>& found) const {
+    found.clear();
     // From the first that nothing before it reaches the box, to the last that begins left of its right end.
     const auto from = std::lower_bound(m_right.begin(), m_right.end(), box.low.x) - m_right.begin();
     for (auto k = static_cast<std::size_t>(from); k < m_by_left.size(); ++k) {
@@ -221,7 +222,6 @@ std::vector<int> Overlaps::with(const ScreenBox& box) const {
         if (body.low.x > box.high.x) break;
         if (may_hide(body, box)) found.push_back(m_by_left[k]);
     }
-    return found;
 }
 
 }  // namespace anamorph::figure

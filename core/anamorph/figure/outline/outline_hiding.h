@@ -35,7 +35,13 @@ class Overlaps {
     /// Prepares the search; `bodies` must outlive this.
     explicit Overlaps(const std::vector<SeenBody>& bodies);
     /// The bodies that may hide what is in a box, in an order that means nothing.
-    std::vector<int> with(const ScreenBox& box) const;
+    std::vector<int> with(const ScreenBox& box) const {
+        std::vector<int> found;
+        find(box, found);
+        return found;
+    }
+    /// The same in place of what `found` holds.
+    void find(const ScreenBox& box, std::vector<int>& found) const;
 
   private:
     const std::vector<SeenBody>& m_bodies;
