@@ -19,6 +19,8 @@ struct Settings {
     int rounds = 15;
     bool bounds = false;     ///< report bounds over true errors instead of times
     bool calibrate = false;  ///< report the planner's costs instead
+    /// Report how well 2 and 16 threads are used instead, by the processor's time of each part of a drawing.
+    bool efficiency = false;
 
     bool wants_case(const std::string& name) const { return lists(case_name, name); }
     bool wants_scheme(const std::string& name) const { return lists(scheme, name); }
@@ -35,6 +37,13 @@ struct Accuracy {
     double mean = kNone, p99 = kNone, max = kNone;
 };
 
+/// How threads share a drawing. `speed_on_two` and `speed_on_sixteen` are over one thread, on cores that are free.
+struct Sharing {
+    double speed_on_two = kNone, speed_on_sixteen = kNone;
+    double processor_ns = kNone;  ///< of all threads
+    double waits = kNone;         ///< how often threads waited for one another
+};
+
 /// One line of the table. Where a number makes no sense for a scheme, it is NaN.
 struct Row {
     std::string op, case_name, scheme;
@@ -47,6 +56,7 @@ struct Row {
     double bound_px = kNone, exact_fraction = kNone;
     double cycles = kNone, frames_per_second = kNone;  ///< those of a machine that is modelled
     bool one_tap = true;  ///< does each pixel come from one point, not from an average? (not in the CSV)
+    Sharing sharing{};    ///< where efficiency is asked for (not in the CSV)
 };
 
 /// A promise about the table: `reached` is to be at least (or at most) `wanted`.
@@ -60,6 +70,7 @@ struct Report {
     std::vector<Row> rows;
     std::vector<Target> targets;
     std::vector<std::string> failures;  ///< failures of the checks that the benchmark makes of itself
+    bool is_quiet = false;              ///< are rows kept and not printed?
 
     /// Keeps a row and prints it.
     void add(const Row& row);
@@ -92,7 +103,10 @@ struct Timed {
 /// less; of the clock on the wall where several do.
 struct Times {
     double median = 0, best = 0;
+    Sharing sharing{};
 };
+/// Are drawings looked at for how threads share them (Settings::efficiency)? All that follow.
+void look_at_sharing(int threads);
 /// Runs all contenders in turn, in another order every round, so that whatever else the machine does hits all
 /// alike. Quick ones run twice in a row and the better of the two counts; slow ones sit out two rounds of
 /// three.

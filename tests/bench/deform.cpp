@@ -70,6 +70,7 @@ void measure(const std::string& case_name, int side, std::size_t points, const S
         row.size = side;
         row.ns_per_px = times[k].median * share;
         row.best_ns_per_px = times[k].best * share;
+        row.sharing = times[k].sharing;
         row.ratio_to_exact = times[0].median / times[k].median * c.repeats;
         row.bound_px = c.bound;
         if (c.value) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawn_map.h"
 
+#include <optional>
+
 #include "anamorph/image/picture.h"
+#include "anamorph/image/pyramid.h"
 
 namespace anamorph::bench {
 
@@ -21,18 +24,21 @@ MapDrawing::MapDrawing(const Settings& settings)
     for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(i * 2654435761u % 65536) / 65536;
 }
 
-void MapDrawing::draw(const DrawnMap& map, const PlanOptions& options) {
-    draw(map, map.plan(options));
+void MapDrawing::draw(const DrawnMap& map, const PlanOptions& options, Filter filter) {
+    draw(map, map.plan(options), filter);
 }
 
-void MapDrawing::draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>& blocks) {
+void MapDrawing::draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>& blocks, Filter filter) {
     Picture picture;
     picture.maps = {{blocks, {{Border(map.source, Wrap::automatic)}}}};
-    picture.filter = Filter::bilinear;
-    const MemorySource source(packed_view<const std::byte>(m_texels.bytes(), PixelType::float32,
+    picture.filter = filter;
+    const MemorySource texels(packed_view<const std::byte>(m_texels.bytes(), PixelType::float32,
                                                            map.source.width(), map.source.height(), 3));
+    std::optional<Pyramid> pyramid;
+    if (filter == Filter::antialias) pyramid.emplace(texels);
+    const Source* const source = pyramid ? static_cast<const Source*>(&*pyramid) : &texels;
     const int side = m_settings.size;
-    picture.draw(&source, {0, 0, side, side},
+    picture.draw(source, {0, 0, side, side},
                  packed_view(m_picture.bytes(), PixelType::float32, side, side, 3), m_pool.parallel_for());
 }
 
@@ -65,6 +71,7 @@ void time_all(const Settings& settings, Report& report, std::vector<TimedRow>& t
     for (std::size_t k = 0; k < timed.size(); ++k) {
         timed[k].row.ns_per_px = times[k].median / pixels;
         timed[k].row.best_ns_per_px = times[k].best / pixels;
+        timed[k].row.sharing = times[k].sharing;
         report.add(timed[k].row);
     }
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/image/filter.h"
 #include "anamorph/plan/block.h"
 #include "anamorph/plan/formula_plan.h"
 #include "bench.h"
@@ -29,9 +30,14 @@ class MapDrawing {
   public:
     explicit MapDrawing(const Settings& settings);
 
-    void draw(const DrawnMap& map, const PlanOptions& options);
+    void draw(const DrawnMap& map, const PlanOptions& options, Filter filter = Filter::bilinear);
+    /// As users get it who set nothing but the tolerance, which is the default's.
+    void draw_with_defaults(const DrawnMap& map, const PlanOptions& options) {
+        draw(map, options, Filter::antialias);
+    }
     /// Draws by blocks that are made already.
-    void draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>& blocks);
+    void draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>& blocks,
+              Filter filter = Filter::bilinear);
     void plan(const DrawnMap& map, const PlanOptions& options);
 
   private:

@@ -79,23 +79,26 @@ void measure(const Settings& settings, Report& report, const NamedLens& lens,
     std::vector<TimedRow> timed;
     for (const double tol : kTols)
         for (const DrawnMap& map : cases)
-            for (const char* scheme : {"automatic", "plan"}) {
-                if (!settings.wants_scheme(scheme)) continue;
+            for (const char* scheme : {"automatic", "plan", "defaults"}) {
+                const bool defaults = std::string(scheme) == "defaults";
+                if (!settings.wants_scheme(scheme) || (defaults && tol != kTols[0])) continue;
                 const PlanOptions options = options_of(tol);
                 Row row = row_of(settings, map, options);
                 row.op = "lens";
                 row.case_name = std::string(lens.name) + " " + map.name;
                 row.scheme = scheme;
                 const bool draws = row.scheme == "automatic";
-                timed.push_back({row, [&drawing, &map, options, draws] {
-                                     draws ? drawing.draw(map, options) : drawing.plan(map, options);
+                timed.push_back({row, [&drawing, &map, options, draws, defaults] {
+                                     defaults ? drawing.draw_with_defaults(map, options)
+                                     : draws  ? drawing.draw(map, options)
+                                              : drawing.plan(map, options);
                                  }});
             }
     time_all(settings, report, timed);
     for (const auto& [row, draw] : timed) {
         const std::string name = row.case_name.substr(row.case_name.find(' ') + 1);
         const Row* plain = report.find(std::string(lens.name) + " " + plain_of(name), row.scheme, row.tol_px);
-        if (!plain || name.starts_with("plain")) continue;
+        if (!plain || name.starts_with("plain") || row.scheme == "defaults") continue;
         char what[96];
         std::snprintf(what, sizeof what, "%s, tol %g, %s: times the plain panorama", row.case_name.c_str(),
                       row.tol_px, row.scheme == "plan" ? "its plan alone" : "all");

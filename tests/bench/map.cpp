@@ -62,14 +62,16 @@ void measure(const Settings& settings, Report& report, const std::vector<DrawnMa
     std::vector<TimedRow> timed;
     for (const double tol : kTols)
         for (const DrawnMap& map : maps)
-            for (const std::string scheme : {"automatic", "plan", "drawn", "exact"}) {
-                if (!settings.wants_scheme(scheme)) continue;
+            for (const std::string scheme : {"automatic", "plan", "drawn", "exact", "defaults"}) {
+                const bool defaults = scheme == "defaults";
+                if (!settings.wants_scheme(scheme) || (defaults && tol != PlanOptions().tol)) continue;
                 PlanOptions options = options_of(tol);
                 if (scheme == "exact") options.scheme = Scheme::exact;
                 Row row = row_of(settings, map, options);
                 row.op = "map";
                 row.scheme = scheme;
                 std::function<void()> draw = [&drawing, &map, options] { drawing.draw(map, options); };
+                if (defaults) draw = [&drawing, &map, options] { drawing.draw_with_defaults(map, options); };
                 if (scheme == "plan") draw = [&drawing, &map, options] { drawing.plan(map, options); };
                 if (scheme == "drawn")
                     draw = [&drawing, &map, blocks = map.plan(options)] { drawing.draw(map, blocks); };
@@ -79,7 +81,9 @@ void measure(const Settings& settings, Report& report, const std::vector<DrawnMa
     for (const auto& [row, draw] : timed) {
         const std::string name = row.case_name.substr(0, row.case_name.find(' '));
         const Row* compiled = report.find(name + " compiled", row.scheme, row.tol_px);
-        if (!compiled || row.scheme == "plan" || compiled->case_name == row.case_name) continue;
+        if (!compiled || row.scheme == "plan" || row.scheme == "defaults" ||
+            compiled->case_name == row.case_name)
+            continue;
         char what[96];
         std::snprintf(what, sizeof what, "%s, tol %g, %s: times the compiled map", name.c_str(), row.tol_px,
                       row.scheme.c_str());

@@ -231,7 +231,8 @@ class Bench {
     void measure(const Scene& scene, const std::vector<double>& tols, bool with_double, bool with_mesh) {
         std::vector<Contender> contenders;
         const auto add = [&](Contender c) {
-            if (m_settings.wants_scheme(c.scheme) || c.scheme == "double") contenders.push_back(std::move(c));
+            if (m_settings.wants_scheme(c.scheme) || (c.scheme == "double" && !m_settings.efficiency))
+                contenders.push_back(std::move(c));
         };
         const ParallelFor all = m_all.parallel_for(), pool = threads();
         if (with_double) add({"double", kNone, [&scene, pool] { true_points(scene, pool); }, nullptr, 0, 1});
@@ -264,7 +265,7 @@ class Bench {
                  [make, &scene, all] { return points_of(make(), scene, all); },
                  std::numeric_limits<double>::infinity(), 0});
         }
-        add_rows(scene, contenders, true_points(scene, all));
+        add_rows(scene, contenders, m_settings.efficiency ? MapPoints() : true_points(scene, all));
     }
 
     /// Near/far's time and bound.
@@ -295,6 +296,7 @@ class Bench {
         r.threads = m_settings.threads;
         r.ns_per_px = times.median / pixels;
         r.best_ns_per_px = times.best / pixels;
+        r.sharing = times.sharing;
         r.ratio_to_exact = double_time / times.median;
         return r;
     }
@@ -313,8 +315,8 @@ class Bench {
             r.tol_px = c.tol;
             r.bound_px = c.bound;
             r.exact_fraction = c.exact_fraction;
-            r.error = c.points ? accuracy(c.points(), truth) : Accuracy{0, 0, 0};
-            if (c.scheme == "automatic" &&
+            r.error = c.points && !m_settings.efficiency ? accuracy(c.points(), truth) : Accuracy{0, 0, 0};
+            if (c.scheme == "automatic" && !m_settings.efficiency &&
                 !(r.error.max <= r.bound_px && (c.tol == 0 || r.bound_px <= c.tol)))
                 m_report.failures.push_back(scene.name + ", tol " + std::to_string(c.tol) +
                                             ": the bound or the tolerance is broken");

@@ -2,12 +2,60 @@
 #include "pixels.h"
 
 #include <sys/mman.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <new>
+#include <utility>
 
 namespace anamorph::bench {
+namespace {
+
+/// What loops are taken down by, if they are.
+Shares* s_shares = nullptr;
+
+double processor_ns(clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) * 1e9 + static_cast<double>(t.tv_nsec);
+}
+double sleeps() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_nvcsw);
+}
+
+}  // namespace
+
+Shares::Shares(const std::function<void()>& draw) {
+    const double from = sleeps(), start = processor_ns(CLOCK_PROCESS_CPUTIME_ID);
+    s_shares = this;
+    draw();
+    s_shares = nullptr;
+    m_all = processor_ns(CLOCK_PROCESS_CPUTIME_ID) - start;
+    m_sleeps = sleeps() - from;
+}
+
+double Shares::speed_on(int threads) const {
+    double alone = m_all, together = 0;
+    for (const std::vector<double>& parts : m_loops) {
+        std::vector<double> until(static_cast<std::size_t>(threads));
+        for (const double part : parts) {
+            *std::min_element(until.begin(), until.end()) += part;
+            alone -= part;
+        }
+        together += *std::max_element(until.begin(), until.end());
+    }
+    return m_all / (std::max(alone, 0.0) + together);
+}
+
+double Shares::waits(int threads) const {
+    // All but one are woken, and one waits for the last.
+    return std::max(0.0, m_sleeps - static_cast<double>(m_loops.size()) * threads);
+}
 
 Buffer::Buffer(std::size_t bytes) {
     constexpr std::size_t kPage = std::size_t{2} << 20, kRoom = 4096;
@@ -37,11 +85,12 @@ Pool::~Pool() {
 }
 
 ParallelFor Pool::parallel_for() {
-    if (m_threads.empty()) return serial_for;
     return [this](std::int64_t count, const std::function<void(std::int64_t)>& body) { run(count, body); };
 }
 
 void Pool::run(std::int64_t count, const std::function<void(std::int64_t)>& body) {
+    if (m_threads.empty() && !s_shares) return serial_for(count, body);
+    if (s_shares) m_times.assign(static_cast<std::size_t>(count), 0.0);
     {
         const std::lock_guard lock(m_mutex);
         m_body = &body;
@@ -54,10 +103,18 @@ void Pool::run(std::int64_t count, const std::function<void(std::int64_t)>& body
     drain();
     std::unique_lock lock(m_mutex);
     m_done.wait(lock, [this] { return m_busy == 0; });
+    if (s_shares) s_shares->add_loop(std::exchange(m_times, {}));
 }
 
 void Pool::drain() {
-    for (std::int64_t i = m_next++; i < m_count; i = m_next++) (*m_body)(i);
+    for (std::int64_t i = m_next++; i < m_count; i = m_next++) do_part(i);
+}
+
+void Pool::do_part(std::int64_t i) {
+    if (!s_shares) return (*m_body)(i);
+    const double start = processor_ns(CLOCK_THREAD_CPUTIME_ID);
+    (*m_body)(i);
+    m_times[static_cast<std::size_t>(i)] = processor_ns(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
 void Pool::work() {

@@ -2,6 +2,7 @@
 // speed_vs_error --csv FILE [--op NAME] [--size N] [--threads N] [--case NAME] [--scheme NAME] [--rounds N]
 // speed_vs_error --bounds [...]
 // speed_vs_error --calibrate [...]: what the planner's costs are here (costs.cpp).
+// speed_vs_error --efficiency [...]: how well 2 and 16 threads are used, on a machine that may do other things meanwhile.
 // --instructions NAME: one of Highway's instruction sets (AVX3, AVX2, SSE2 ...), in place of the machine's best.
 //
 // Measures how fast each scheme draws and how far it is from the exact map, next to what else one could use,
@@ -23,6 +24,7 @@
 #include "anamorph/image/block_sampler.h"
 #include "bench.h"
 #include "output_file.h"
+#include "pixels.h"
 
 namespace anamorph::bench {
 namespace {
@@ -59,8 +61,8 @@ Settings parse(int argc, char** argv) {
     Settings s;
     for (int i = 1; i < argc; ++i) {
         const std::string_view option = argv[i];
-        if (option == "--bounds" || option == "--calibrate") {
-            (option == "--bounds" ? s.bounds : s.calibrate) = true;
+        if (option == "--bounds" || option == "--calibrate" || option == "--efficiency") {
+            (option == "--bounds" ? s.bounds : option == "--calibrate" ? s.calibrate : s.efficiency) = true;
             continue;
         }
         if (i + 1 == argc) throw std::invalid_argument(std::string(option) + ": needs a value");
@@ -85,9 +87,9 @@ Settings parse(int argc, char** argv) {
             throw std::invalid_argument(
                 std::string(option) +
                 ": must be one of --csv, --op, --size, --threads, --case, --scheme, --rounds, "
-                "--bounds and --calibrate");
+                "--bounds, --calibrate and --efficiency");
     }
-    if (s.csv.empty() && !s.bounds && !s.calibrate)
+    if (s.csv.empty() && !s.bounds && !s.calibrate && !s.efficiency)
         throw std::invalid_argument("--csv: a file to write is needed");
     const auto known = [&](const Op& op) { return op.name == s.op; };
     if (s.op != "all" && std::none_of(ops().begin(), ops().end(), known)) {
@@ -181,17 +183,54 @@ void print_defaults(const Report& report) {
     bool first = true;
     for (const Row& ours : report.rows) {
         if (ours.scheme != "defaults") continue;
-        const Row* const bare = report.find(ours.case_name, "automatic", kUsualTol, ours.threads);
+        const Row* bare = report.find(ours.case_name, "automatic", ours.tol_px, ours.threads);
+        if (!bare) bare = report.find(ours.case_name, "auto", ours.tol_px, ours.threads);
         if (!bare) continue;
-        if (first) std::printf("\nwith the defaults, beside bilinear at tol %g:\n", kUsualTol);
+        if (first) std::printf("\nwith the defaults, beside bilinear at the same tolerance:\n");
         first = false;
         std::printf("  %-20s %9.3f ns/px, %.2f times %.3f\n", ours.case_name.c_str(), ours.ns_per_px,
                     ours.ns_per_px / bare->ns_per_px, bare->ns_per_px);
     }
 }
 
+/// The number of threads by whose sharing drawings are looked at, or 0.
+int s_sharing = 0;
+
+/// Draws on 1, 2 and 16 threads, and prints how these share the work.
+int print_efficiency(const Settings& given) {
+    constexpr int kThreads[] = {1, 2, 16};
+    Report reports[std::size(kThreads)];
+    for (std::size_t k = 0; k < std::size(kThreads); ++k) {
+        look_at_sharing(kThreads[k]);
+        Settings settings = given;
+        settings.threads = kThreads[k];
+        reports[k].is_quiet = true;
+        for (const Op& op : ops())
+            if (settings.op == "all" || settings.op == op.name) op.run(settings, reports[k]);
+    }
+    std::printf(
+        "\nspeed on free cores by the parts' own times, and processor time over that of one thread:\n");
+    std::printf("%-20s %-16s %9s %8s %9s %8s %8s %10s %9s %9s\n", "case", "scheme", "tol px", "ms",
+                "2: speed", "time", "waits", "16: speed", "time", "waits");
+    for (const Row& row : reports[0].rows) {
+        const Sharing& one = row.sharing;
+        if (std::isnan(one.speed_on_two)) continue;
+        const Row* on[2] = {reports[1].find(row.case_name, row.scheme, row.tol_px, 2),
+                            reports[2].find(row.case_name, row.scheme, row.tol_px, 16)};
+        const auto time = [&](const Row* r) {
+            return r ? r->sharing.processor_ns / one.processor_ns : kNone;
+        };
+        const auto waits = [](const Row* r) { return r ? r->sharing.waits : kNone; };
+        std::printf("%-20s %-16s %9.4g %8.2f %9.2f %8.2f %8.0f %10.1f %9.2f %9.0f\n", row.case_name.c_str(),
+                    row.scheme.c_str(), row.tol_px, one.processor_ns * 1e-6, one.speed_on_two, time(on[0]),
+                    waits(on[0]), one.speed_on_sixteen, time(on[1]), waits(on[1]));
+    }
+    return 0;
+}
+
 int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
+    if (settings.efficiency) return print_efficiency(settings);
     if (settings.calibrate) {
         print_costs(settings);
         return 0;
@@ -233,7 +272,7 @@ RegisterOp::RegisterOp(Op op) {
 
 void Report::add(const Row& row) {
     rows.push_back(row);
-    print_row(row);
+    if (!is_quiet) print_row(row);
 }
 
 const Row* Report::find(const std::string& case_name, const std::string& scheme, double tol_px,
@@ -255,7 +294,29 @@ void Report::add_limit(const std::string& what, double at_most, double reached) 
     targets.push_back({what, at_most, reached, reached, true});
 }
 
+void look_at_sharing(int threads) {
+    s_sharing = threads;
+}
+
+/// The sharing of a drawing, of the run that took least.
+Sharing sharing_of(const Timed& drawing) {
+    constexpr int kRuns = 4;
+    Sharing found;
+    for (int run = 0; run < kRuns; ++run) {
+        const Shares shares(drawing.draw);
+        if (!shares.has_loops()) return {};
+        if (shares.all_ns() >= found.processor_ns) continue;
+        found = {shares.speed_on(2), shares.speed_on(16), shares.all_ns(), shares.waits(s_sharing)};
+    }
+    return found;
+}
+
 std::vector<Times> time_interleaved(const std::vector<Timed>& contenders, int rounds) {
+    if (s_sharing > 0) {
+        std::vector<Times> shared;
+        for (const Timed& drawing : contenders) shared.push_back({kNone, kNone, sharing_of(drawing)});
+        return shared;
+    }
     constexpr double kQuick = 40e6;
     constexpr int kSlowEvery = 3;
     std::vector<std::vector<double>> times(contenders.size());
@@ -284,7 +345,7 @@ std::vector<Times> time_interleaved(const std::vector<Timed>& contenders, int ro
     std::vector<Times> result;
     for (std::vector<double>& t : times) {
         std::sort(t.begin(), t.end());
-        result.push_back({t[t.size() / 2], t.front()});
+        result.push_back({t[t.size() / 2], t.front(), {}});
     }
     return result;
 }

@@ -262,7 +262,8 @@ class Bench {
         const Scene scene(name, map, type, m_settings.size, m_all.parallel_for());
         std::vector<Contender> contenders;
         const auto add = [&](Contender c) {
-            if (m_settings.wants_scheme(c.scheme) || c.scheme == "double") contenders.push_back(std::move(c));
+            if (m_settings.wants_scheme(c.scheme) || (c.scheme == "double" && !m_settings.efficiency))
+                contenders.push_back(std::move(c));
         };
         for (const double tol : kTols) add(ours(scene, WarpScheme::automatic, "automatic", tol));
         add(with_defaults(scene));
@@ -358,12 +359,14 @@ class Bench {
             r.threads = m_settings.threads;
             r.ns_per_px = times[i].median / pixels;
             r.best_ns_per_px = times[i].best / pixels;
+            r.sharing = times[i].sharing;
             r.ratio_to_exact = double_time / times[i].median;
             r.bound_px = c.bound;
             r.exact_fraction = c.exact_fraction;
             r.one_tap = c.one_tap;
-            r.error = c.points ? accuracy(c.points(), scene.truth) : Accuracy{0, 0, 0};
-            const bool approximates = c.tol > 0;
+            r.error =
+                c.points && !m_settings.efficiency ? accuracy(c.points(), scene.truth) : Accuracy{0, 0, 0};
+            const bool approximates = c.tol > 0 && !m_settings.efficiency;
             if (approximates && !(r.error.max <= r.bound_px && r.bound_px <= c.tol) && r.exact_fraction < 1)
                 m_report.failures.push_back(scene.name + ", " + c.scheme + ", tol " + std::to_string(c.tol) +
                                             ": the bound or the tolerance is broken");
