@@ -9,52 +9,15 @@ import resource
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
-PROGRAM = os.environ["ANAMORPH"]
+from program_test import PROGRAM, VIEW, ProgramTest, noise_ppm
+
 DOCS = pathlib.Path(os.environ["ANAMORPH_DOCS"])
-VIEW = "src=noise.tif\nto=rectilinear\nfov=95\nyaw=30\nsize=900x700\n"
 
 
-def noise_ppm(width, height):
-    """An image of noise, in the simplest of formats."""
-    state, data = 1, bytearray()
-    for _ in range(3 * width * height):
-        state = (state * 1664525 + 1013904223) % 2**32
-        data.append(state >> 24)
-    return b"P6\n%d %d\n255\n" % (width, height) + bytes(data)
-
-
-class Pictures(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "noise.ppm").write_bytes(noise_ppm(256, 128))
-        (self.folder / "sky.pano").write_text(VIEW.replace("noise.tif", "noise.ppm"))
-
-    def run_program(self, *arguments, **more):
-        result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=100, **more)
-        return result.returncode, result.stdout, result.stderr
-
-    def ok(self, *arguments):
-        status, out, error = self.run_program(*arguments)
-        self.assertEqual((status, error), (0, ""), arguments)
-        return out
-
-    def hash(self, *names):
-        lines = self.ok("hash", *names).splitlines()
-        self.assertEqual([line[32:] for line in lines], ["  " + str(name) for name in names])
-        return [line[:32] for line in lines]
-
-    def refused(self, message, *arguments):
-        status, out, error = self.run_program(*arguments)
-        self.assertEqual((status, out), (1, ""), arguments)
-        self.assertIn(message, error)
-        self.assertTrue(error.startswith("anamorph: ") and error.count("\n") == 1 and len(error) < 400, error)
-
+class Pictures(ProgramTest):
     def test_files_and_recipes_have_one_hash(self):
         for name in ("out.tif", "out.png", "out.ppm"):
             self.ok("draw", "sky.pano", "-o", name)
@@ -269,7 +232,7 @@ class Pictures(unittest.TestCase):
         self.refused("is a part of another picture", "join", "p1", "q2", "p3")
         # What the recipe says, or what is in its files, may have changed in between.
         recipe, noise = self.folder / "sky.pano", self.folder / "noise.ppm"
-        for file, other in ((recipe, VIEW.replace("yaw=30", "yaw=31").replace("noise.tif", "noise.ppm").encode()), (noise, noise_ppm(256, 128)[:-3] + b"\0\0\0")):
+        for file, other in ((recipe, VIEW.replace("yaw=30", "yaw=31").encode()), (noise, noise_ppm(256, 128)[:-3] + b"\0\0\0")):
             stat, before = file.stat(), file.read_bytes()
             file.write_bytes(other)
             os.utime(file, ns=(10**18, 10**18))
