@@ -53,14 +53,16 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     };
     const auto given = std::make_shared<Given>();
 
-    const auto add_compression = [given](CLI::App& command) {
+    const auto add_compression = [given](CLI::App& command, const std::string& words, const char* text) {
         return command
-            .add_option(
-                "--compression", given->compression,
-                "How FILE is packed, in its format's words: zip, filtered, huffman, rle or fixed of a PNG, "
-                "maybe with a level, such as zip:9; piz, zip, dwaa:45 of an EXR, jpeg:90")
-            ->option_text("NAME [rle for PNG]");
+            .add_option("--compression", given->compression,
+                        "How FILE is packed, in its format's words: " + words)
+            ->option_text(text);
     };
+    const std::string of_pictures =
+        "zip, filtered, huffman, rle or fixed of a PNG, maybe with a level, such as zip:9; piz, zip, dwaa:45 "
+        "of an EXR, jpeg:90";
+    const char* const png = "NAME [rle for PNG]";
 
     const auto add_jobs = [given](CLI::App& command) {
         command
@@ -104,7 +106,7 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
                      "default all of these if FILE has {frame}")
         ->option_text("A-B[xS]")
         ->excludes(part);
-    add_compression(*draw_command)->excludes(part);
+    add_compression(*draw_command, of_pictures, png)->excludes(part);
     add_jobs(*draw_command);
     draw_command->callback([=, &run] {
         run = [=] {
@@ -138,7 +140,7 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
         ->add_option("--frames", given->frames,
                      "The frames, with {frame} in RECIPE, by its key frame, or of its pictures from 0 on")
         ->option_text("A-B[xS]");
-    add_compression(*stmap);
+    add_compression(*stmap, "zip, piz or none of an EXR, zip, lzw or none of a TIFF", "NAME");
     add_jobs(*stmap);
     stmap->footer(
         "anamorph draw \"plate.exr.warp?mesh=map.exr\" -o flat.exr draws a picture through an ST-map");
@@ -160,7 +162,7 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     join->add_option("PART", given->names, "All files of anamorph draw --part, in any order")->required();
     join->add_option("-o,--output", given->output, "The picture; without, parts are only checked")
         ->option_text("FILE");
-    add_compression(*join);
+    add_compression(*join, of_pictures, png);
     join->callback([=, &run] {
         run = [=] {
             std::cout << hash_digits(join_parts(given->names, {given->output, given->compression}))
