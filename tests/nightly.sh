@@ -21,8 +21,8 @@ coverage() {
     llvm-profdata merge -sparse "$clang"/profiles/*.profraw -o "$clang/coverage.profdata" &&
         llvm-cov report "$clang/tests/core/anamorph_core_tests" -instr-profile="$clang/coverage.profdata" core/anamorph
 }
-# VTK's modules, the only shared libraries, beside those of the last version, where there is one: nothing of a version that
-# differs in its patch alone may be gone.
+# The shared libraries beside those of the last version, where there is one: nothing of a version that differs in its patch alone may
+# be gone.
 abi() {
     local tag old library
     tag="$(git describe --tags --abbrev=0 --match 'v*' 2>/dev/null)" || return 0
@@ -30,10 +30,11 @@ abi() {
     old="$PWD/build/abi"
     rm -rf "$old" && mkdir -p "$old" && git archive "$tag" | tar -x -C "$old" || return
     (cd "$old" && with_vtk cmake --preset vtk -DVTK_ROOT="$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3 \
-        -DANAMORPH_TESTS=OFF && cmake --build --preset vtk -j "$jobs") || return
+        -DANAMORPH_TESTS=OFF -DANAMORPH_SHARED=ON && cmake --build --preset vtk -j "$jobs") || return
     for library in "$old"/build/vtk/lib*/libAnamorph*.so; do
         abidiff --no-added-syms "$library" "build/vtk/${library#"$old/build/vtk/"}" || return
     done
+    abidiff --no-added-syms "$old/build/vtk/core/libanamorph.so" build/release/core/libanamorph.so
 }
 # Kernels are written as Highway is, whose macros and names clang-tidy does not know.
 tidy() {

@@ -176,7 +176,9 @@ oiio_commands='
     printf "%s\n" "cmake_minimum_required(VERSION 3.25)" "project(User CXX)" "find_package(Anamorph REQUIRED)" "add_executable(user user.cpp)" \
         "target_link_libraries(user Anamorph::oiio_ops)" >user/CMakeLists.txt
     printf "%s\n" "#include <anamorph/version.h>" "#include <anamorph/oiio_ops.h>" "int main() { return *anamorph::version() == 0; }" >user/user.cpp
-    cmake -S user -B user/build >cmake.txt && cmake --build user/build >cmake.txt && user/build/user'
+    cmake -S user -B user/build >cmake.txt && cmake --build user/build >cmake.txt && user/build/user
+    sed -i s/Anamorph::oiio_ops/Anamorph::shared/ user/CMakeLists.txt && sed -i /oiio_ops/d user/user.cpp
+    cmake --build user/build >cmake.txt && user/build/user && ldd user/build/user | grep -q libanamorph.so'
 deform='
     printf "%s\n" "from anamorph.vtk import vtkAnamorphDeform, vtkAnamorphEllipsoidMapper" "from vtkmodules.vtkFiltersSources import vtkPlaneSource" \
         "plane = vtkPlaneSource()" "plane.SetResolution(20, 20)" "deform = vtkAnamorphDeform()" \

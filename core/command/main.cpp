@@ -180,6 +180,8 @@ class Command {
     }
 
     int run(int argc, char** argv) {
+        // After the subcommands, which else would have it as well.
+        m_app.set_help_all_flag("--help-all", "Print this help and that of every subcommand, and exit");
         try {
             m_app.parse(argc, argv);
             return m_run();

@@ -193,6 +193,8 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", "anamorph " + std::string(version()));
     std::function<void()> run;
     add_picture_commands(app, run);
+    // After the subcommands, which else would have it as well.
+    app.set_help_all_flag("--help-all", "Print this help and that of every subcommand, and exit");
     try {
         app.parse(argc, argv);
         run();

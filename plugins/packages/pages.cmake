@@ -13,7 +13,7 @@ set(pages "")
 function(page target component name summary)
     set(file ${CMAKE_CURRENT_BINARY_DIR}/${name}.1.gz)
     add_custom_command(OUTPUT ${file}
-        COMMAND sh -c "SOURCE_DATE_EPOCH=\${SOURCE_DATE_EPOCH:-0} '${ANAMORPH_HELP2MAN}' --no-info --name '${summary}' --version-string 'Anamorph ${PROJECT_VERSION}' '$<TARGET_FILE:${target}>' | gzip -9nc > '${file}'"
+        COMMAND sh -c "SOURCE_DATE_EPOCH=\${SOURCE_DATE_EPOCH:-0} '${ANAMORPH_HELP2MAN}' --no-info --help-option=--help-all --name '${summary}' --version-string 'Anamorph ${PROJECT_VERSION}' '$<TARGET_FILE:${target}>' | gzip -9nc > '${file}'"
         DEPENDS ${target} COMMENT "Manual page of ${name}" VERBATIM)
     install(FILES ${file} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component} EXCLUDE_FROM_ALL)
     list(APPEND pages ${file})

@@ -66,6 +66,18 @@ class Help(unittest.TestCase):
             alone = subprocess.run([f"{PROGRAM}-{name}", "--help"], capture_output=True, text=True, timeout=50)
             self.assertEqual(run(name, "--help"), (0, alone.stdout, ""))
 
+    def test_all_help_has_the_options_of_every_subcommand(self):
+        # Manual pages are made of it.
+        for words in ([], ["figure"], ["machine"]):
+            status, whole, error = run(*words, "--help-all")
+            self.assertEqual((status, error), (0, ""))
+            subcommands = re.findall(r"(?m)^  (\w+) +[A-Z]", run(*words, "--help")[1].split("Subcommands:")[1])
+            self.assertGreater(len(subcommands), 2)
+            for name in subcommands:
+                of_it = re.search(rf"(?ms)^{name}\n(.*?)(?=^\w|\Z)", whole)[1]
+                for option in re.findall(r"(?m)^ +(--?[\w-]+)", run(*words, name, "--help")[1]):
+                    self.assertTrue(option in ("-h", "--help") or option in of_it, (name, option))
+
     def test_new_recipes_have_every_key(self):
         toys = "  toy " in run("help")[1]
         for name, rows in tables():

@@ -13,7 +13,8 @@ import unittest
 import debs
 from debs import BUILD, output
 
-NAMES = ["anamorph", "anamorph-openimageio", "libanamorph-dev", "python3-anamorph"]
+SERIES = ".".join(os.environ["ANAMORPH_VERSION"].split(".")[:2])
+NAMES = ["anamorph", "anamorph-openimageio", "libanamorph-dev", f"libanamorph{SERIES}", "python3-anamorph"]
 
 
 def setUpModule():
@@ -49,8 +50,20 @@ class Packages(unittest.TestCase):
         # Python's own version, since a part is C++.
         minor = sys.version_info.minor
         self.assertIn(f"python3 (>= 3.{minor}~), python3 (<< 3.{minor + 1}~)", field("python3-anamorph", "Depends"))
-        for needed in ("libglm-dev", "libhwy-dev", "libpugixml-dev", "libopenimageio-dev (<< "):
+        for needed in ("libglm-dev", "libhwy-dev", "libpugixml-dev", "libopenimageio-dev (<< ", f"libanamorph{SERIES} (= {version})"):
             self.assertIn(needed, field("libanamorph-dev", "Depends"))
+
+    def test_shared_library(self):
+        library = next(ROOT.glob("usr/lib/**/libanamorph.so.*.*.*"))
+        self.assertIn(f"Library soname: [libanamorph.so.{SERIES}]", output("readelf", "-d", library))
+        names = {path.name for path in library.parent.glob("libanamorph.so*")}
+        self.assertEqual(names, {"libanamorph.so", f"libanamorph.so.{SERIES}", library.name})
+        of_runtime = " ".join(path for _, _, path in files_of(f"libanamorph{SERIES}"))
+        self.assertNotRegex(of_runtime, r"libanamorph\.so( |$)|\.h |\.a ")
+        # What Debian's tools find of it: how others depend on it, and that the loader's list is made anew.
+        self.assertEqual(output("dpkg-deb", "-I", DEBS[f"libanamorph{SERIES}"], "shlibs").split()[:3],
+                         ["libanamorph", SERIES, f"libanamorph{SERIES}"])
+        self.assertIn("ldconfig", output("dpkg-deb", "-I", DEBS[f"libanamorph{SERIES}"], "triggers"))
 
     def test_what_every_package_has(self):
         for name in NAMES:
@@ -62,7 +75,8 @@ class Packages(unittest.TestCase):
             self.assertIn(f"anamorph ({field(name, 'Version')}) ", changes)
             for permissions, owner, path in files:
                 self.assertEqual(owner, "root/root", path)
-                self.assertIn(permissions[1:], ("rwxr-xr-x", "rw-r--r--"), path)
+                if not permissions.startswith("l"):
+                    self.assertIn(permissions[1:], ("rwxr-xr-x", "rw-r--r--"), path)
                 self.assertRegex(path, r"^\./(usr/|etc/profile\.d/|etc/$|$)")
             self.assertNotIn(BUILD, " ".join(paths))
 

@@ -92,7 +92,8 @@ class Bench(unittest.TestCase):
             plot.svg([])
 
     def test_what_is_wrong_is_said(self):
-        for arguments, message in ((["--size", "63"], "--size=63: must be from 64 to 8192"), (["--rounds", "0"], "--rounds=0: must be"), (["x"], "x")):
+        for arguments, message in ((["--size", "63"], "--size=63: must be from 64 to 8192"), (["--rounds", "0"], "--rounds=0: must be"), (["x"], "x: there is no such argument"),
+                                   (["--tabels"], "--tabels: there is no such option, perhaps --tables is meant")):
             done = self.run_bench(*arguments)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(message, done.stderr)

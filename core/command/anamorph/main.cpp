@@ -146,6 +146,8 @@ int run(int argc, char** argv) {
     complete->add_option("WORD", line, "Its words, from the program to the cursor")->required();
     CLI::App* doctor = app.add_subcommand("doctor", "Say what the hosts of this machine see of Anamorph");
     doctor->footer("The status is 1 where a host cannot read recipes, or load the filters that it has.");
+    // After the subcommands, which else would have it as well.
+    app.set_help_all_flag("--help-all", "Print this help and that of every subcommand, and exit");
     try {
         if (argc > 2 && std::string_view(argv[1]) == "run" && argv[2][0] != '-')
             return run_with_plugin(argv + 2);

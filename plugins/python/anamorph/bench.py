@@ -10,6 +10,7 @@ With --tables the long tables of a build's tests/bench/speed_vs_error, with all 
 """
 import argparse
 import csv
+import difflib
 import html
 import io
 import math
@@ -210,7 +211,10 @@ def main(arguments=None):
     parser.add_argument("--size", type=int, default=1024, metavar="N", help="width and height of the pictures, 64 to 8192 [1024]")
     parser.add_argument("--rounds", type=int, default=5, metavar="N", help="of which the least processor time counts, 1 to 1000 [5]")
     parser.add_argument("--tables", action="store_true", help="measure the long tables of all schemes as well, where the build has them")
-    given = parser.parse_args(arguments)
+    given, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        meant = difflib.get_close_matches(unknown[0].split("=")[0], ("--output", "--size", "--rounds", "--tables", "--help"), 1)
+        parser.error(f"{unknown[0]}: there is no such {'option' if unknown[0].startswith('-') else 'argument'}" + (f", perhaps {meant[0]} is meant" if meant else ""))
     if not 64 <= given.size <= 8192:
         parser.error(f"--size={given.size}: must be from 64 to 8192")
     if not 1 <= given.rounds <= 1000:
