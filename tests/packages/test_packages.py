@@ -39,6 +39,12 @@ class Packages(unittest.TestCase):
         for name in NAMES:
             self.assertRegex(field(name, "Version"), r"^%s(\+deb\d+)?$" % re.escape(os.environ["ANAMORPH_VERSION"]))
 
+    def test_documents_name_the_version(self):
+        docs = ROOT / "usr/share/doc/anamorph"
+        self.assertEqual(re.search(r"(?m)^## (.*)$", (docs / "CHANGELOG.md").read_text())[1], os.environ["ANAMORPH_VERSION"])
+        for page in ("install.md", "cpp.md"):
+            self.assertEqual(set(re.findall(r"libanamorph(?:\.so\.)?(\d+\.\d+)", (docs / "docs" / page).read_text())), {SERIES}, page)
+
     def test_depends(self):
         version = field("anamorph", "Version")
         self.assertIn(f"anamorph (= {version})", field("anamorph-openimageio", "Depends"))
