@@ -50,6 +50,8 @@ class Film {
         if (m_by_key) return;
         m_all = drawing.open(drawing.recipe, {});
         for (int s = 0; s < m_all->subimages(); ++s) m_numbers.push_back(number_of(s));
+        if (!m_range->all && m_numbers.size() == 1 && m_range->last > m_numbers[0])
+            throw Error("--frames", *drawing.frames, "the recipe has one picture, without {frame} in it");
         if (!m_range->all && (m_range->first < m_numbers.front() || m_range->last > m_numbers.back()))
             throw Error("--frames", *drawing.frames,
                         "must be from " + std::to_string(m_numbers.front()) + " to " +

@@ -143,7 +143,8 @@ void add_picture_commands(CLI::App& app, std::function<void()>& run) {
     add_compression(*stmap, "zip, piz or none of an EXR, zip, lzw or none of a TIFF", "NAME");
     add_jobs(*stmap);
     stmap->footer(
-        "anamorph draw \"plate.exr.warp?mesh=map.exr\" -o flat.exr draws a picture through an ST-map");
+        "anamorph draw \"plate.exr.warp?mesh=map.exr\" -o flat.exr draws a picture through an ST-map, with "
+        "&flip_v=1 one of --flip-v");
     stmap->callback([=, &run] {
         run = [=] {
             declare_recipes();

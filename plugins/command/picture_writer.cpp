@@ -192,6 +192,12 @@ void write_rows(OIIO::ImageOutput& out, const ImageSpec& spec, const std::string
     if (written.valid()) written.get();
 }
 
+/// Does a name end as files of films do?
+bool is_film(const std::string& name) {
+    const std::string ending = OIIO::Strutil::lower(OIIO::Filesystem::extension(name));
+    return ending == ".mp4" || ending == ".mov" || ending == ".mkv" || ending == ".avi" || ending == ".webm";
+}
+
 }  // namespace
 
 void write_picture(const ImageSpec& picture, const PictureFile& file,
@@ -200,6 +206,10 @@ void write_picture(const ImageSpec& picture, const PictureFile& file,
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = 0;
     std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(output);
+    if (!out && is_film(output))
+        throw Error("--output", printable(output),
+                    "must be a picture: films are drawn as numbered ones, turn.{frame}.png, of which ffmpeg "
+                    "makes one");
     if (!out) throw Error(OIIO::geterror());
     set_compression(*out, file, spec);
     const std::string format = out->format_name();

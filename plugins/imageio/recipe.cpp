@@ -113,9 +113,14 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
         recipe.files[operation.main_file].name = parsed.base;
     }
     const std::string first = operation.sources.empty() ? operation.main_file : operation.sources[0];
-    if (!first.empty() && !recipe.files.count(first))
-        recipe.files[first] = {parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1), "",
-                               !operation.sources.empty()};
+    if (!first.empty() && !recipe.files.count(first)) {
+        const std::string source = parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1);
+        recipe.files[first] = {source, "", !operation.sources.empty()};
+        // A name without keys and without a picture's ending was meant to be a file's.
+        if (name == parsed.base && !fs::path(source).has_extension() && !side_file_reader().exists(source))
+            throw Error("there is no recipe \"" + printable(name) + "\", nor a source \"" +
+                        printable(source) + "\"");
+    }
     if (!operation.gathering_file(recipe.files).empty()) recipe.files.at(first).image = false;
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
     if (operation.reads_faces) find_faces(recipe, first);

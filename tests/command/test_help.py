@@ -113,7 +113,17 @@ class Help(unittest.TestCase):
                     self.assertTrue(list(pathlib.Path(folder).glob(recipe.replace("/", "_") + ".*.png")), recipe)
                 again = subprocess.run([PROGRAM, "new", name, *needs, "-o", "x." + name], cwd=folder, capture_output=True, text=True, timeout=50)
                 self.assertEqual(again.returncode, 1)
-                self.assertIn(" is there already", again.stderr)
+                self.assertRegex(again.stderr, r"^anamorph: x\.\w+ is there already, and nothing was written: give another -o\n$")
+            # What the example reads is there from the first, and serves a second recipe; another file of the name does not.
+            ok("new", "warp", "a.ppm", "-o", "second.warp")
+            pathlib.Path(folder, "grid.json").write_text("mine")
+            refused = subprocess.run([PROGRAM, "new", "warp", "a.ppm", "-o", "third.warp"], cwd=folder, capture_output=True, text=True, timeout=50)
+            self.assertEqual((refused.returncode, refused.stderr), (
+                1, "anamorph: grid.json, which the recipe would read, is there already, and nothing was written: give another -o\n"))
+            self.assertFalse(os.path.exists(os.path.join(folder, "third.warp")))
+            self.assertEqual(pathlib.Path(folder, "grid.json").read_text(), "mine")
+            early = subprocess.run([PROGRAM, "new", "pano", "later.jpg", "-o", "early.pano"], cwd=folder, capture_output=True, text=True, timeout=50)
+            self.assertEqual((early.returncode, early.stderr), (0, "anamorph: there is no file later.jpg yet, which the recipe reads\n"))
             self.assertEqual([p for p in pathlib.Path(folder).rglob(".*")], [])
 
     def test_completes_command_lines(self):

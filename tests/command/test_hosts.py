@@ -95,6 +95,7 @@ class Hosts(unittest.TestCase):
         self.assertTrue(self.line(page, "hosts/oiiotool").endswith("reads no recipes: read : no reader"), page)
         after = page.split("hosts/oiiotool", 1)[1]
         self.assertIn('\n      it does by "anamorph run"; not naming the plugin\'s folder: OIIO_LIBRARY_PATH\n', after)
+        self.assertIn("\n      for this shell: export" + "".join(f" {name}={self.plugin.parent}" for name in VARIABLES) + "\n", after)
         self.assertIn("-     OIIO_LIBRARY_PATH: not set\n", page)
 
     def test_doctor_tells_of_another_version(self):

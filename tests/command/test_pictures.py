@@ -152,10 +152,15 @@ class Pictures(ProgramTest):
         self.assertEqual(self.hash("m.0001.tif")[0], self.hash("m.morph?a=noise.ppm&b=noise.ppm&features=f.json&t=0.5")[0])
         self.refused("--frames=1-3: must be from 0 to 2", "draw", "m.morph?a=noise.ppm&b=noise.ppm&features=f.json&frames=3", "-o", "n.tif",
                      "--frames", "1-3")
+        self.refused("--frames=0-3: the recipe has one picture", "draw", "m.morph?a=noise.ppm&b=noise.ppm&features=f.json", "-o", "n.tif",
+                     "--frames", "0-3")
 
     def test_refuses_frames(self):
         for frames in ("x", "-1", "3-2", "1-", "1-2x0", "1-2x", "1,2"):
             self.refused("--frames=%s: must be a number such as 7" % frames, "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames=" + frames)
+        self.refused("--output=turn.mp4: must be a picture: films are drawn as numbered ones", "draw", self.frame_view("5"), "-o", "turn.mp4")
+        self.refused("--output=turn.0008.mp4: must be a picture", "draw", self.frame_view("{frame}"), "-o", "turn.mp4", "--frames", "8")
+        self.refused('there is no recipe "nowhere.warp", nor a source "nowhere"', "draw", "nowhere.warp", "-o", "a.png")
         self.refused("--frames: must be given as numbers", "draw", self.frame_view("{frame}"), "-o", "a.png")
         self.refused("--frames: must be given as numbers", "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames", "all")
         self.refused("frame 9: yaw=9x", "draw", self.frame_view("{frame}x"), "-o", "a.png", "--frames", "9")
@@ -415,6 +420,7 @@ class Pictures(ProgramTest):
         if not shutil.which("parallel"):
             self.skipTest("GNU parallel is not there")
         block = re.search(r"\n\n(    parallel .*\n(?:    .*\n)*)", (DOCS / "hash.md").read_text())[1]
+        shutil.copy(self.folder / "sky.pano", self.folder / "view.pano")
         environment = dict(os.environ, PATH=os.path.dirname(PROGRAM) + ":" + os.environ["PATH"])
         result = subprocess.run(["bash", "-euc", block], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=100)
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -25,6 +25,23 @@ if(NOT failed OR NOT said MATCHES "there is no component wibble")
     message(FATAL_ERROR "a component that is not there: ${said}")
 endif()
 
+# The project that docs/cpp.md shows, with its program.
+file(READ ${SOURCE_DIR}/../../docs/cpp.md page)
+if(NOT page MATCHES "```cmake\n([^`]*)```")
+    message(FATAL_ERROR "docs/cpp.md: no project")
+endif()
+file(WRITE ${WORK_DIR}/mine/CMakeLists.txt "${CMAKE_MATCH_1}")
+file(COPY_FILE ${SOURCE_DIR}/../../examples/cpp/panorama.cpp ${WORK_DIR}/mine/mine.cpp)
+run(${CMAKE_COMMAND} -S ${WORK_DIR}/mine -B ${WORK_DIR}/mine/build -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/mine/build)
+run(${WORK_DIR}/mine/build/mine)
+
+# The installed module is found by the folder that docs/install.md names.
+if(EXISTS ${WORK_DIR}/prefix/lib/python3/dist-packages/anamorph)
+    run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK_DIR}/prefix/lib/python3/dist-packages /usr/bin/python3 -c
+        "import anamorph; assert anamorph.__file__.startswith('${WORK_DIR}')")
+endif()
+
 # A stock host loads the installed plugin.
 file(GLOB_RECURSE plugin ${WORK_DIR}/prefix/anamorph_recipes.imageio.so)
 get_filename_component(plugin_dir "${plugin}" DIRECTORY)

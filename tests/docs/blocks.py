@@ -46,6 +46,7 @@ LINES = [
     # What stock programs draw by the plugin, and ours without a host: the release build.
     Line(r"export OIIO_LIBRARY_PATH=", ("oiio",)),
     Line(r"cd build/demo/out$", ("oiio",)),
+    Line(r"export PATH=DIR/bin:", (), why="tests/consumer/consumer_test.cmake loads what is installed by these variables"),
     Line(r"oiiotool ", ("oiio",)),
     Line(r"for face in .*oiiotool ", ("oiio",)),
     Line(r"ffmpeg ", ("oiio",)),
@@ -101,6 +102,7 @@ OTHERS = [
     Other("json", '"features"', "core: Docs.ItsFilesCanBeRead"),
     Other("json", '"panoramas"', "core: Docs.ItsFilesCanBeRead"),
     Other("c++", "#include <anamorph/panorama.h>", "example_panorama"),
+    Other("cmake", "project(Mine", "consumer: the page's project"),
     Other("c++", "#include <anamorph/oiio_ops.h>", "consumer: readme_oiio_example"),
     Other("nudes", "* What is behind a star", "command", "one.nudes"),
     Other("nudes", "subroutine wave 3 limb at angle", "command", "wave.nudes",

@@ -90,6 +90,35 @@ class Maps(unittest.TestCase):
         x, y = made.centers()
         np.testing.assert_allclose(np.stack(again.points(x, y))[:, 1:-1, 1:-1], np.stack(made.points(x, y))[:, 1:-1, 1:-1], atol=1e-4)
 
+    def test_overscan(self):
+        """What lies around the display window is a part of all that is drawn, there and back."""
+        x, y = np.meshgrid(np.arange(80) + 0.5, np.arange(60) + 0.5)
+        source = np.float32(np.stack([x, y], -1))
+        lens = anamorph.Map("lens", (80, 60), lens="brown:k1=-0.15", fov=70, size="all", filter="bilinear")
+        whole = anamorph.Picture("lens", source, lens="brown:k1=-0.15", fov=70, size="all")
+        x0, y0, x1, y1 = whole.window
+        self.assertLess(x0, 0)
+        self.assertEqual((lens.size, lens.window), ((80, 60), (x0, y0, x1, y1)))
+        shape = (y1 - y0, x1 - x0)
+        drawn = lens.draw(source)
+        for array in (drawn, lens.bounds(), lens.coverage(), lens.to_stmap(), lens.centers()[0]):
+            self.assertEqual(array.shape[:2], shape)
+        self.assertEqual((lens.centers()[0][0, 0], lens.centers()[1][0, 0]), (x0 + 0.5, y0 + 0.5))
+        expected = anamorph.lens(source, lens="brown:k1=-0.15", fov=70, size="all", output="stmap", tol=0)
+        covered = lens.coverage() > 0.999
+        np.testing.assert_allclose(lens.to_stmap()[covered], expected[covered], atol=1e-6)
+        # The other way all of the source is seen, of the picture's pixels by themselves and by their windows.
+        back = lens.inverse()
+        self.assertEqual((back.size, back.source_size, back.source_window), ((80, 60), (80, 60), lens.window))
+        again = back.draw(drawn, filter="bilinear")
+        self.assertEqual(again.shape, source.shape)
+        np.testing.assert_allclose(again[2:-2, 2:-2], source[2:-2, 2:-2], atol=0.01)
+        image = anamorph.Image(drawn, corner=(x0, y0), display=(0, 0, 80, 60))
+        np.testing.assert_array_equal(back.draw(image, filter="bilinear"), again)
+        for wrong in (drawn[1:], anamorph.Image(drawn, corner=(x0, y0), display=(0, 0, 81, 60))):
+            with self.assertRaisesRegex(ValueError, r"must be \(80, 60\)"):
+                back.draw(wrong)
+
     def test_compositions(self):
         outer = anamorph.Map("warp", (96, 64), mesh={**SHEET, "vertices": (np.array(SHEET["vertices"]) * [1.5, 4 / 3]).tolist()})
         inner = anamorph.Map("lens", (96, 64), lens="brown:k1=-0.05", fov=60)
@@ -120,7 +149,7 @@ class Maps(unittest.TestCase):
         for call in (lambda: anamorph.Map("lens", (0, 64)), lambda: anamorph.Map("lens", (1.5, 64)), lambda: anamorph.Map("twist", (9, 9)),
                      lambda: made.compose(anamorph.Map("lens", (95, 64), fov=50)), lambda: made.inverse().bounds(), lambda: made.inverse().explain(),
                      lambda: made.draw(np.zeros((9, 9))), lambda: anamorph.Map.from_stmap(np.zeros((4, 4, 7)), (9, 9)),
-                     lambda: anamorph.Map("lens", (9, 9), k1=3)):
+                     lambda: anamorph.Map("lens", (9, 9), k1=3), lambda: anamorph.Map("lens", 640), lambda: made.draw(np.zeros(9))):
             with self.assertRaises((ValueError, TypeError)):
                 call()
 

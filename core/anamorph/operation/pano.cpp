@@ -282,7 +282,8 @@ Taken source_projection(const ParameterValues& values, const SourceFacts& source
     if (std::int64_t{source.width} * 6 == source.height)
         return {Projection::cubemap, "assumed from the 1:6 shape"};
     throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
-                std::to_string(source.height) + ") does not say its projection: must be one of " +
+                std::to_string(source.height) +
+                ") does not say its projection, which of a photo is rectilinear: must be one of " +
                 projection_names());
 }
 

@@ -171,6 +171,10 @@ void examine_reader(const Asked& host, const Plugins& plugins, const std::string
         report.more("it has OpenImageIO " + host.version + ", and the plugin is for " + plugins.made_for);
     } else if (const ProgramRun helped = by_anamorph_run(host.draws); draws(helped)) {
         report.more("it does by \"anamorph run\"; not naming the plugin's folder: " + lacking);
+        std::string set;
+        for (const char* variable : kPluginVariables)
+            set += " " + std::string(variable) + "=" + printable(with_folders("", plugins.files));
+        report.more("for this shell: export" + set);
         report.more("(the package's /etc/profile.d/anamorph.sh sets them at the next login)");
     } else {
         report.more("nor by \"anamorph run\": " + why(helped));

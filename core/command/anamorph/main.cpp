@@ -167,6 +167,8 @@ int run(int argc, char** argv) {
             write_recipe_template(operation_named(new_operation), new_sources, new_output);
         else
             print_help(operation);
+        for (const std::string& name : missing_files(new_sources))
+            std::cerr << "anamorph: there is no file " << printable(name) << " yet, which the recipe reads\n";
         if (std::cout.flush()) return good ? 0 : 1;
         throw Error("the standard output cannot be written");
     } catch (const CLI::ParseError& e) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 
 #include "anamorph/error.h"
@@ -49,9 +51,21 @@ std::string comment(const std::string& text) {
     return commented;
 }
 
-/// A file that is not there yet. Throws Error where it is.
-void write_new(const fs::path& name, const std::string& text) {
-    if (fs::exists(fs::symlink_status(name))) throw Error(printable(name.string()) + " is there already");
+bool is_there(const fs::path& name) {
+    return fs::exists(fs::symlink_status(name));
+}
+/// Is a file there with just this text, as an earlier recipe left it?
+bool holds(const fs::path& name, const std::string& text) {
+    std::ifstream file(name, std::ios::binary);
+    return file && std::string(std::istreambuf_iterator<char>(file), {}) == text;
+}
+/// What must not be there yet.
+void check_new(const fs::path& name, const std::string& whose) {
+    if (is_there(name))
+        throw Error(printable(name.string()) + whose +
+                    " is there already, and nothing was written: give another -o");
+}
+void write(const fs::path& name, const std::string& text) {
     OutputFile file(name.string());
     file.write(text);
     file.close();
@@ -101,10 +115,24 @@ void write_recipe_template(const Operation& operation, std::vector<std::string> 
                 fs::absolute(folder).lexically_normal());
     const std::map<std::string, std::string> set = set_values(operation, sources, true);
     const std::string text = recipe_template(operation, sources, true);
+    check_new(output, "");
+    std::map<fs::path, std::string> beside;
     for (const auto& [name, content] : operation.example.files)
-        if (std::ranges::any_of(set, [&name = name](const auto& value) { return value.second == name; }))
-            write_new(folder / name, content);
-    write_new(output, text);
+        if (std::ranges::any_of(set, [&name = name](const auto& value) { return value.second == name; }) &&
+            !holds(folder / name, content))
+            beside[folder / name] = content;
+    for (const auto& [name, content] : beside) check_new(name, ", which the recipe would read,");
+    for (const auto& [name, content] : beside) write(name, content);
+    write(output, text);
+}
+
+std::vector<std::string> missing_files(const std::vector<std::string>& sources) {
+    std::vector<std::string> missing;
+    for (const std::string& source : sources) {
+        const bool is_file_name = source.find_first_of("?{#%()") == std::string::npos;
+        if (is_file_name && !is_there(source)) missing.push_back(source);
+    }
+    return missing;
 }
 
 }  // namespace anamorph::command

@@ -15,9 +15,12 @@ std::string recipe_template(const Operation& operation, const std::vector<std::s
                             bool example);
 
 /// Writes such a recipe as the file `output`, and beside it the files that its example names; sources get the
-/// names that they have when seen from there. Nothing that is there is written over. Throws Error, also where some sources are given, but fewer
-/// than the operation needs.
+/// names that they have when seen from there. Nothing that is there is written over; a file that an earlier recipe left is taken as it is. Throws
+/// Error, also where some sources are given, but fewer than the operation needs.
 void write_recipe_template(const Operation& operation, std::vector<std::string> sources,
                            const std::string& output);
+
+/// Those of some sources that are no recipes, frames or other words, but files that are not there.
+std::vector<std::string> missing_files(const std::vector<std::string>& sources);
 
 }  // namespace anamorph::command

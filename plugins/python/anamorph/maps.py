@@ -26,12 +26,15 @@ class Map:
 
     operation: its name. source: the size of the source, (width, height), or an array or Image. keys: as of the operation.
     All points are in pixels from the upper left corner of the display window, x right, y down, the first pixel's centre at (0.5, 0.5), and NaN where
-    there is none. `size` is that of the picture, `source_size` that of the source, (width, height).
+    there is none. `size` is that of the picture, `source_size` that of the source, (width, height). `window` is what is drawn of the picture,
+    (x0, y0, x1, y1), and more than `size` with overscan; `source_window` is what there is of the source.
     """
 
     def __init__(self, operation, source, **keys):
         from . import Picture
 
+        if _numpy.ndim(source) == 0 and isinstance(source, (int, float)):
+            raise ValueError(f"source={source}: must be (width, height), an array or an Image")
         if isinstance(source, tuple):
             width, height = _integers("source", source, 2)
             if width < 1 or height < 1:
@@ -40,25 +43,26 @@ class Map:
         self._set(Picture(operation, source, **keys), source, keys)
 
     def _set(self, picture, source, keys):
-        x0, y0, x1, y1 = picture.display
         self._picture, self._keys, self._source = picture, keys, source
-        self.size = (x1 - x0, y1 - y0)
-        self.source_size = _source_size(source)
+        self.size, self.window = _from_display(picture.display, picture.window)
+        self.source_size, self.source_window = _windows(source)
         self._points, self._jacobians = picture.source_points, picture.jacobians
 
     @classmethod
     def from_stmap(cls, stmap, source_size):
         """The map that an array of shape (height, width, 2) holds, as output="stmap" draws it: u and v from 0 to 1 on the source, v down. Between
-        pixels it is a cubic (.warp)."""
+        pixels it is a cubic (.warp). All of the array is its picture's display window."""
         return cls("warp", tuple(source_size), mesh=_numpy.asarray(stmap, _numpy.float32))
 
     @classmethod
-    def from_functions(cls, points, jacobians, size, source_size):
+    def from_functions(cls, points, jacobians, size, source_size, *, window=None, source_window=None):
         """A map of your own: points(x, y) gives (u, v), jacobians(x, y) the derivatives as jacobians() does, both of arrays of double. What is
-        proven of an operation's map is not of it."""
+        proven of an operation's map is not of it. Windows are by default the sizes'."""
         made = cls.__new__(cls)
         made._picture, made._points, made._jacobians = None, points, jacobians
         made.size, made.source_size = _integers("size", size, 2), _integers("source_size", source_size, 2)
+        made.window = (0, 0, *made.size) if window is None else _integers("window", window, 4)
+        made.source_window = (0, 0, *made.source_size) if source_window is None else _integers("source_window", source_window, 4)
         return made
 
     def points(self, x, y):
@@ -72,12 +76,12 @@ class Map:
         return self._jacobians(x, y)
 
     def centers(self):
-        """The centres of the picture's pixels, (x, y), arrays (height, width)."""
-        width, height = self.size
-        return tuple(_numpy.meshgrid(_numpy.arange(width) + 0.5, _numpy.arange(height) + 0.5))
+        """The centres of the pixels of the window, (x, y), arrays (height, width), as those of bounds() and of all else that is drawn."""
+        x0, y0, x1, y1 = self.window
+        return tuple(_numpy.meshgrid(_numpy.arange(x0, x1) + 0.5, _numpy.arange(y0, y1) + 0.5))
 
     def bounds(self):
-        """The proven bound of each pixel of the picture, in source pixels: an array (height, width)."""
+        """The proven bound of each pixel of the window, in source pixels: an array (height, width)."""
         return self._drawn("bound")
 
     def coverage(self):
@@ -105,15 +109,17 @@ class Map:
             if joined is not None and " of " in joined.said.get("anamorph:chain", "") and ":" not in joined.said["anamorph:chain"]:
                 made = Map.__new__(Map)
                 made._set(joined, inner._source, self._keys)
-                made.source_size = inner.source_size
+                made.source_size, made.source_window = inner.source_size, inner.source_window
                 return made
         return Map.from_functions(lambda x, y: inner.points(*self.points(x, y)),
-                                  lambda x, y: inner.jacobians(*self.points(x, y)) @ self.jacobians(x, y), self.size, inner.source_size)
+                                  lambda x, y: inner.jacobians(*self.points(x, y)) @ self.jacobians(x, y), self.size, inner.source_size,
+                                  window=self.window, source_window=inner.source_window)
 
     def inverse(self):
         """The map from points of the source to points of the picture. Each is found by Newton's iteration and met to 1e-12 of the source's
         size; where several points of the picture show one of the source it is one of them, and NaN where none was found."""
-        return Map.from_functions(self._found, self._of_inverse, self.source_size, self.size)
+        return Map.from_functions(self._found, self._of_inverse, self.source_size, self.size, window=self.source_window,
+                                  source_window=self.window)
 
     def to_stmap(self):
         """The map as an array (height, width, 2) of float32, as output="stmap" draws it: for mesh= of anamorph.warp, or a file of other programs.
@@ -123,12 +129,11 @@ class Map:
         return _numpy.where(_numpy.isfinite(stmap).all(-1, keepdims=True), stmap, -1).astype(_numpy.float32)
 
     def draw(self, source, **more):
-        """Draws an array of the size of the source through the map. `more`: keys of the operation, such as filter; of inverses and other maps
-        that are no operation's, of .warp by to_stmap()."""
+        """Draws an array through the map: one of all that the source's window has, of its display window, or an Image. The result has the pixels
+        of the window. `more`: keys of the operation, such as filter; of inverses and other maps that are no operation's, of .warp by to_stmap()."""
         from . import Picture, apply
 
-        if _source_size(source) != tuple(self.source_size):
-            raise ValueError(f"source is {_source_size(source)}: must be {tuple(self.source_size)}, (width, height)")
+        source = self._placed(source)
         if self._picture is None or isinstance(self._source, Picture) or "anamorph:chain" in self._picture.said:
             return apply("warp", source, mesh=self.to_stmap(), **more)
         return apply(self._picture.operation, source, **{**self._keys, **more})
@@ -136,6 +141,24 @@ class Map:
     def __repr__(self):
         of = self._picture.said.get("anamorph:chain", self._picture.operation) if self._picture is not None else "functions"
         return f"<anamorph.Map {of} {self.size[0]}x{self.size[1]} of {self.source_size[0]}x{self.source_size[1]}>"
+
+    def _placed(self, source):
+        """A source with the windows that an array of its size has here."""
+        from . import Image
+
+        x0, y0, x1, y1 = self.source_window
+        size, whole = _windows(source)[0], (x1 - x0, y1 - y0)
+        if isinstance(source, Image) and source.display[2] > source.display[0] or size == self.source_size:
+            if size != self.source_size:
+                raise ValueError(f"source has a display window of {size}: must be {self.source_size}, (width, height)")
+            return source
+        if size != whole:
+            also = "" if whole == self.source_size else f" or, with what lies around, {whole}"
+            raise ValueError(f"source is {size}: must be {self.source_size}{also}, (width, height)")
+        if isinstance(source, Image):
+            return Image(source.pixels, channels=source.channels, unassociated=source.unassociated, corner=(x0, y0), display=(0, 0, *self.source_size),
+                         metadata=source.metadata)
+        return Image(source, corner=(x0, y0), display=(0, 0, *self.source_size))
 
     def _of_operation(self, what):
         if self._picture is None:
@@ -151,9 +174,10 @@ class Map:
         return Picture(picture.operation, self._source, **{**self._keys, "output": output}).draw()
 
     def _starts(self):
-        """Points spread over the picture, and their source points."""
-        width, height = self.size
-        x, y = _numpy.meshgrid((_numpy.arange(_STARTS) + 0.5) / _STARTS * width, (_numpy.arange(_STARTS) + 0.5) / _STARTS * height)
+        """Points spread over the window, and their source points."""
+        x0, y0, x1, y1 = self.window
+        between = (_numpy.arange(_STARTS) + 0.5) / _STARTS
+        x, y = _numpy.meshgrid(x0 + between * (x1 - x0), y0 + between * (y1 - y0))
         points = _numpy.stack([x.ravel(), y.ravel()], -1)
         sources = _numpy.stack(self.points(points[:, 0], points[:, 1]), -1)
         known = _numpy.isfinite(sources).all(-1)
@@ -197,8 +221,8 @@ class Map:
             at[taken], rest[taken], off[taken] = tried[nearer], new_rest[nearer], new_off[nearer]
             stride[i] = _numpy.where(nearer, _numpy.minimum(1, 2 * stride[i]), stride[i] / 2)
             active[i] = (off[i] > met) & (stride[i] > 1e-6)
-        width, height = self.size
-        inside = (at >= 0).all(-1) & (at[:, 0] <= width) & (at[:, 1] <= height)
+        x0, y0, x1, y1 = self.window
+        inside = (at >= (x0, y0)).all(-1) & (at <= (x1, y1)).all(-1)
         # Rounding alone may stop it a little before.
         return _numpy.where(((off <= 1e3 * met) & inside)[:, None], at, _numpy.nan)
 
@@ -230,14 +254,23 @@ def _nearest(sources, wanted):
     return _numpy.pad(best, ((0, 0), (0, _TRIES - best.shape[1])), mode="edge")
 
 
-def _source_size(source):
+def _from_display(display, window):
+    """The size of a display window, and a window counted from its corner."""
+    x0, y0, x1, y1 = display
+    return (x1 - x0, y1 - y0), (window[0] - x0, window[1] - y0, window[2] - x0, window[3] - y0)
+
+
+def _windows(source):
+    """The size of a source's display window, and its pixels' window counted from there."""
     from . import Image, Picture
 
     if isinstance(source, Picture):
-        x0, y0, x1, y1 = source.display
-        return x1 - x0, y1 - y0
-    if isinstance(source, Image):
-        x0, y0, x1, y1 = source.display
-        return (x1 - x0, y1 - y0) if x1 > x0 else (source.pixels.shape[1], source.pixels.shape[0])
-    shape = _numpy.shape(source)
-    return shape[1], shape[0]
+        return _from_display(source.display, source.window)
+    shape = _numpy.shape(source.pixels if isinstance(source, Image) else source)
+    if len(shape) < 2:
+        raise ValueError(f"source has the shape {shape}: must be (height, width) or (height, width, channels)")
+    height, width = shape[:2]
+    if isinstance(source, Image) and source.display[2] > source.display[0]:
+        x, y = source.corner
+        return _from_display(source.display, (x, y, x + width, y + height))
+    return (width, height), (0, 0, width, height)
