@@ -155,6 +155,15 @@ class Pictures(ProgramTest):
         self.refused("--frames=0-3: the recipe has one picture", "draw", "m.morph?a=noise.ppm&b=noise.ppm&features=f.json", "-o", "n.tif",
                      "--frames", "0-3")
 
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not there")
+    def test_frames_become_a_film_as_the_page_shows_it(self):
+        self.ok("draw", self.frame_view("{frame}"), "-o", "turn.{frame}.png", "--frames", "8-12x2")
+        line = re.search(r"(?m)^    (ffmpeg -pattern_type .*)$", (DOCS / "command.md").read_text())[1]
+        subprocess.run(["bash", "-euc", line], cwd=self.folder, capture_output=True, check=True, timeout=100)
+        counted = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0", "turn.mp4"],
+                                 cwd=self.folder, capture_output=True, text=True, timeout=50)
+        self.assertEqual(counted.stdout.strip().strip(","), "3", counted.stderr)
+
     def test_refuses_frames(self):
         for frames in ("x", "-1", "3-2", "1-", "1-2x0", "1-2x", "1,2"):
             self.refused("--frames=%s: must be a number such as 7" % frames, "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames=" + frames)
