@@ -118,8 +118,8 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
         recipe.files[first] = {source, "", !operation.sources.empty()};
         // A name without keys and without a picture's ending was meant to be a file's.
         if (name == parsed.base && !fs::path(source).has_extension() && !side_file_reader().exists(source))
-            throw Error("there is no recipe \"" + printable(name) + "\", nor a source \"" +
-                        printable(source) + "\"");
+            throw Error("there is no recipe \"" + printable(name) + "\", and the source \"" +
+                        printable(source) + "\" does not exist");
     }
     if (!operation.gathering_file(recipe.files).empty()) recipe.files.at(first).image = false;
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);

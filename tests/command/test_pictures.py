@@ -169,7 +169,7 @@ class Pictures(ProgramTest):
             self.refused("--frames=%s: must be a number such as 7" % frames, "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames=" + frames)
         self.refused("--output=turn.mp4: must be a picture: films are drawn as numbered ones", "draw", self.frame_view("5"), "-o", "turn.mp4")
         self.refused("--output=turn.0008.mp4: must be a picture", "draw", self.frame_view("{frame}"), "-o", "turn.mp4", "--frames", "8")
-        self.refused('there is no recipe "nowhere.warp", nor a source "nowhere"', "draw", "nowhere.warp", "-o", "a.png")
+        self.refused('there is no recipe "nowhere.warp", and the source "nowhere" does not exist', "draw", "nowhere.warp", "-o", "a.png")
         self.refused("--frames: must be given as numbers", "draw", self.frame_view("{frame}"), "-o", "a.png")
         self.refused("--frames: must be given as numbers", "draw", self.frame_view("{frame}"), "-o", "a.png", "--frames", "all")
         self.refused("frame 9: yaw=9x", "draw", self.frame_view("{frame}x"), "-o", "a.png", "--frames", "9")
