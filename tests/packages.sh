@@ -81,7 +81,7 @@ make_packages() {
     rm -f "$root"/build/packages/*.deb
     in_root env CCACHE_DIR=/ccache CCACHE_SLOPPINESS=pch_defines,time_macros CMAKE_CXX_COMPILER_LAUNCHER=ccache sh -c "
         cmake -S /anamorph -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE='$optimize -DNDEBUG' -DANAMORPH_TESTS=OFF -DANAMORPH_OIIO=$oiio \
-            -DANAMORPH_TOOLKIT=$toolkit -DANAMORPH_VIEWER=$viewer -DPython3_EXECUTABLE=/usr/bin/python3 &&
+            -DANAMORPH_SHARED=$oiio -DANAMORPH_TOOLKIT=$toolkit -DANAMORPH_VIEWER=$viewer -DPython3_EXECUTABLE=/usr/bin/python3 &&
         cmake --build /build -j $jobs --target packages" >"$log" 2>&1 || fail "$log"
     local deb
     for deb in "$root"/build/packages/*.deb; do
