@@ -15,6 +15,12 @@ class Error : public std::runtime_error {
         : std::runtime_error(parameter + "=" + value + ": " + rule), m_parameter(parameter) {}
     /// Constructs the error of a failure that no single parameter caused; parameter() is then empty.
     explicit Error(const std::string& message) : std::runtime_error(message) {}
+    /// The error of a parameter that must be given. `rest` is what follows "fov is not given": ": must be a number".
+    static Error not_given(const std::string& parameter, const std::string& rest) {
+        Error error(parameter + " is not given" + rest);
+        error.m_parameter = parameter;
+        return error;
+    }
 
     const std::string& parameter() const noexcept { return m_parameter; }
 

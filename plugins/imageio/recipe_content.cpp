@@ -160,7 +160,7 @@ std::vector<SideFile> sources_of(const Recipe& recipe) {
         const auto file = recipe.files.find(keys[i]);
         const bool given = file != recipe.files.end();
         if (i < recipe.operation->least_sources && !given)
-            throw Error(keys[i] + " is not given: must be the name of an image");
+            throw Error::not_given(keys[i], ": must be the name of an image");
         if (given && i > sources.size())
             throw Error(keys[i], printable(file->second.name), "must be given together with " + keys[i - 1]);
         if (given) sources.push_back(file->second);

@@ -489,6 +489,15 @@ class BadInput(unittest.TestCase):
             self.assertIsInstance(caught.exception, ValueError)
             self.assertLess(len(str(caught.exception)), 401)
 
+    def test_keys_that_are_not_given(self):
+        photo = noise(32, 40)
+        for call, parameter in ((lambda: anamorph.pano(photo), "from"), (lambda: anamorph.lens(photo), "lens"),
+                                (lambda: anamorph.lens(photo, lens="3de4:k1=.1"), "fov"), (lambda: anamorph.warp(photo), "mesh"),
+                                (lambda: anamorph.morph(photo, photo), "features"), (lambda: anamorph.drape(photo, surface="positions"), "positions")):
+            with self.subTest(parameter), self.assertRaisesRegex(anamorph.Error, f"^{parameter} is not given") as caught:
+                call()
+            self.assertEqual(caught.exception.parameter, parameter)
+
     def test_values_that_are_none(self):
         for value in (object(), 3j, {1: 2}, b"bytes"):
             with self.subTest(value), self.assertRaises(TypeError):

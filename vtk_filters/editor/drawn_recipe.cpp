@@ -78,7 +78,7 @@ DrawnRecipe::DrawnRecipe(const anamorph::Recipe& recipe, const std::string& edit
         throw Error("a recipe of ." + m_operation->name + " has no " + edited + ": must be one that has");
     const auto file = m_files.find(edited);
     if (file == m_files.end())
-        throw Error(edited + " is not given: must be the name of the file that is edited");
+        throw Error::not_given(edited, ": must be the name of the file that is edited");
     m_edited_file = file->second.name;
     file->second = {json_name(m_edited_file), ""};
     for (const std::string& key : m_operation->sources) {

@@ -266,7 +266,7 @@ surface::SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
     check_formula_keys(values, has("formula"));
     if (has("formula")) sum.formula = formula_of(values);
     const bool sampled = has("positions");
-    if (sampled && !sum.positions) throw Error("positions is not given: must be a picture of x, y and z");
+    if (sampled && !sum.positions) throw Error::not_given("positions", ": must be a picture of x, y and z");
     if (!sampled && sum.positions)
         throw Error("positions is given: surface must be positions, or blend name it");
     for (const surface::SurfaceSum::Part& part : sum.parts)

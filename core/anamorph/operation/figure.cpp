@@ -199,7 +199,7 @@ std::string beside(const std::string& script, const std::string& name) {
 
 const SideFile& script_of(const SideFiles& files) {
     const auto found = files.find("script");
-    if (found == files.end()) throw Error("script is not given: must be the name of a script of NUDES");
+    if (found == files.end()) throw Error::not_given("script", ": must be the name of a script of NUDES");
     return found->second;
 }
 
@@ -526,8 +526,9 @@ class Figures final : public Pictures {
         : m_request(std::move(request)), m_film(std::move(film)), m_frame(frame) {
         if (!m_frame) m_frames = m_film->count();
         if (m_frames > kMostSubimages)
-            throw Error("frame is not given and the script shows " + std::to_string(m_frames) +
-                        " frames: must be given where there are more than " + std::to_string(kMostSubimages));
+            throw Error::not_given("frame", " and the script shows " + std::to_string(m_frames) +
+                                                " frames: must be given where there are more than " +
+                                                std::to_string(kMostSubimages));
         if (!m_request.fit) return;
         figure::SeenExtent extent;
         for (int i = 0; i < m_frames; ++i)

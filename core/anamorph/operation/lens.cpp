@@ -82,7 +82,7 @@ LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
     if (model.kind != LensModel::Kind::none) return model;
     if (values.given("lens"))
         throw Error("lens", printable(values.text("lens")), "must be a lens, as in ptlens:b=-0.02");
-    throw Error("lens is not given and the source does not say it: must be given, as in ptlens:b=-0.02");
+    throw Error::not_given("lens", " and the source does not say it: must be given, as in ptlens:b=-0.02");
 }
 
 /// The vertical field of view that pixels of that shape make; none where they are square.
@@ -137,7 +137,7 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
             {"anamorph:fov", rounded_degrees(fov) + " degrees as " + facts.focal_length_said_by + " says"});
         return with(fov, std::move(says));
     }
-    throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
+    throw Error::not_given("fov", " and the source does not say it: must be given for lens=" + model.text());
 }
 
 /// The least size about the middle of a source's picture in which all of its pixels are.

@@ -163,8 +163,9 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
         refuse("color_weights", "frames");
     }
     if (pictures.size() > 2 && !values.given("shape_weights"))
-        throw Error("shape_weights is not given: must be one number for each of the " +
-                    std::to_string(pictures.size()) + " pictures, with sum 1");
+        throw Error::not_given("shape_weights", ": must be one number for each of the " +
+                                                    std::to_string(pictures.size()) +
+                                                    " pictures, with sum 1");
     return request;
 }
 
@@ -213,7 +214,7 @@ std::optional<std::vector<int>> order_by_links(const Features& features, const O
 std::shared_ptr<const Features> read_features(const MorphRequest& request, const OperationInput& input) {
     const auto found = input.files.find("features");
     if (found == input.files.end())
-        throw Error("features is not given: must be the name of a .json, .csv or .svg file");
+        throw Error::not_given("features", ": must be the name of a .json, .csv or .svg file");
     const SideFile& file = found->second;
     std::shared_ptr<const Features> features = read_once<Features>(
         file, "features", [&] { return parse_features_file(input.reader.text(file.name), file.name); });

@@ -281,10 +281,10 @@ Taken source_projection(const ParameterValues& values, const SourceFacts& source
     if (width == 2 * height) return {Projection::equirectangular, "assumed from the 2:1 shape"};
     if (std::int64_t{source.width} * 6 == source.height)
         return {Projection::cubemap, "assumed from the 1:6 shape"};
-    throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
-                std::to_string(source.height) +
-                ") does not say its projection, which of a photo is rectilinear: must be one of " +
-                projection_names());
+    throw Error::not_given(
+        "from", " and the source (" + std::to_string(source.width) + "x" + std::to_string(source.height) +
+                    ") does not say its projection, which of a photo is rectilinear: must be one of " +
+                    projection_names());
 }
 
 /// Is a key given that not all tables have?

@@ -101,8 +101,9 @@ Size natural_size(const Text& text, FormulaSetting setting, const Chart& source)
     const double density = formula_of(text, setting).pixels_per_radian(setting.picture);
     const double side = std::round(kProbe * source.pixels_per_radian() / density);
     if (!(side > 0 && side < HUGE_VAL))
-        throw Error(
-            "size is not given, and in its middle the formula does not tell how fine the picture is: must be "
+        throw Error::not_given(
+            "size",
+            ", and in its middle the formula does not tell how fine the picture is: must be "
             "N or NxM");
     const int rounded = static_cast<int>(std::clamp(side, 1.0, double{kMaxDefaultSize}));
     return {rounded, rounded};

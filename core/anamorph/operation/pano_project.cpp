@@ -391,13 +391,13 @@ TargetValues with_target(const ParameterValues& given, const ProjectRequest& req
     TargetValues target{given};
     if (given.given("to")) return target;
     if (!request.project->panorama)
-        throw Error("to is not given and \"" + printable(request.name) + "\" has no row p: must be one of " +
-                    projection_names());
+        throw Error::not_given("to", " and \"" + printable(request.name) +
+                                         "\" has no row p: must be one of " + projection_names());
     const HuginPanorama& panorama = *request.project->panorama;
     try {
         panorama.check(request.name);
     } catch (const Error& error) {
-        throw Error("to is not given: " + std::string(error.what()));
+        throw Error::not_given("to", ": " + std::string(error.what()));
     }
     const auto is_given = [&](std::initializer_list<const char*> names) {
         return std::any_of(names.begin(), names.end(), [&](const char* name) { return given.given(name); });

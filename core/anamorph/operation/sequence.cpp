@@ -67,8 +67,9 @@ void Sequence::choose_frames() {
     else if (last + 1 <= kMostFrames)
         m_frames = static_cast<int>(last) + 1;
     else
-        throw Error("frames is not given and the last key frame is " + shortest(last) +
-                    ": must be given where that is above " + std::to_string(kMostFrames - 1));
+        throw Error::not_given("frames", " and the last key frame is " + shortest(last) +
+                                             ": must be given where that is above " +
+                                             std::to_string(kMostFrames - 1));
 }
 
 }  // namespace anamorph

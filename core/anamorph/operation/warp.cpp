@@ -219,7 +219,8 @@ std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const Operat
         throw Error("points", printable(points->second.name), "must not be given together with mesh");
     const bool has_none = !has_mesh && !has_points;
     if (has_none && !request.program)
-        throw Error("mesh is not given: must be a mesh (.json) or an ST-map (an image), or points be given");
+        throw Error::not_given("mesh",
+                               ": must be a mesh (.json) or an ST-map (an image), or points be given");
     std::shared_ptr<const WarpMap> map =
         has_none   ? unmoved()
         : has_mesh ? read_mesh(mesh->second, {request.step, input.values.toggle("flip_v")}, input.reader)
