@@ -335,13 +335,12 @@ HWY_INLINE void InStages(const Drawing& drawing, const Locating& locate, const S
                          const Storing& store) {
     const int begin = drawing.row_begin, end = drawing.row_end;
     const int ahead = HWY_MAX(1, HWY_MIN(kAhead / (drawing.end - drawing.begin), kRows - 1));
-    for (int j = begin; j < HWY_MIN(begin + ahead, end); ++j) locate(j);
-    for (int j = begin; j < end; ++j) {
+    // Each stage stands here once, as it is long.
+    for (int j = begin - ahead; j <= end; ++j) {
         if (j + ahead < end) locate(j + ahead);
-        sample(j);
+        if (j >= begin && j < end) sample(j);
         if (j > begin) store(j - 1);
     }
-    store(end - 1);
 }
 
 }  // namespace HWY_NAMESPACE

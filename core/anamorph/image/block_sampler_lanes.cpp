@@ -452,7 +452,7 @@ HWY_INLINE void LocateOwn(const Offsets& at, int k, int channels, int32_t row, P
 }
 
 /// The channels of a row that came out infinite or as no numbers, again, as weightless.h says.
-void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+HWY_NOINLINE void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const int bytes = size_of(s.type), count = at.count * s.channels, side = is_cubic(s.kernel) ? 4 : 2;
     const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * bytes;
     const auto row = static_cast<int32_t>(s.row_stride / bytes);
@@ -508,11 +508,14 @@ HWY_INLINE void Mend(const Texels& s, const Offsets& at, float* out) {
     if (NeedsMending(s) && !AllFinite(out, at.count * s.channels)) MendChannels(s, at, out);
 }
 
-/// Mends a row of a drawing that may have such channels.
-HWY_INLINE void MendRow(const Drawing& to, int row, float* values) {
-    if (!NeedsMending(to.texels) || AllFinite(values, (to.end - to.begin) * to.texels.channels)) return;
+HWY_NOINLINE void MendDrawnRow(const Drawing& to, int row, float* values) {
     HWY_ALIGN float x[kRowRoom], y[kRowRoom];
     MendChannels(to.texels, PointsOfRow(to, row, x, y), values);
+}
+/// Mends a row of a drawing that may have such channels.
+HWY_INLINE void MendRow(const Drawing& to, int row, float* values) {
+    if (NeedsMending(to.texels) && !AllFinite(values, (to.end - to.begin) * to.texels.channels))
+        MendDrawnRow(to, row, values);
 }
 
 /// Fetches what SampleTyped is to read of a row: of several taps, which lie next to each other, one in four.
@@ -546,8 +549,10 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out) {
         else
             SampleTaps<T, k>(s, at, out);
     };
-    if (s.channels == 3) return with(std::integral_constant<int, 3>{});
-    if (s.channels == 4) return with(std::integral_constant<int, 4>{});
+    if constexpr (kQuad == 4) {
+        if (s.channels == 3) return with(std::integral_constant<int, 3>{});
+        if (s.channels == 4) return with(std::integral_constant<int, 4>{});
+    }
     with(std::integral_constant<int, 0>{});
 }
 
@@ -715,13 +720,15 @@ void DrawNine(const Drawing& to) {
 template <class T>
 void DrawTyped(const Drawing& to) {
     const Texels& s = to.texels;
-    if (ReadNine(s) && kQuad == 4) {
-        if (s.channels == 3) return DrawNine<T, 3>(to);
-        if (s.channels == 4) return DrawNine<T, 4>(to);
-    }
-    if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
-        if (s.channels == 3) return DrawBilinear<T, 3>(to);
-        if (s.channels == 4) return DrawBilinear<T, 4>(to);
+    if constexpr (kQuad == 4) {
+        if (ReadNine(s)) {
+            if (s.channels == 3) return DrawNine<T, 3>(to);
+            if (s.channels == 4) return DrawNine<T, 4>(to);
+        }
+        if (s.kernel == Kernel::bilinear && s.tap_count == 1) {
+            if (s.channels == 3) return DrawBilinear<T, 3>(to);
+            if (s.channels == 4) return DrawBilinear<T, 4>(to);
+        }
     }
     const int count = to.end - to.begin;
     HWY_ALIGN float x[kRows][kRowRoom], y[kRows][kRowRoom];

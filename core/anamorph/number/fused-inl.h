@@ -124,16 +124,16 @@ HWY_INLINE hn::Vec<D> SumsInDouble(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c
     return hn::Combine(d, NearestFloats(half, upper), NearestFloats(half, lower));
 }
 #endif
-#endif
 
-/// a b + c of floats, rounded once.
+/// a b + c by doubles: long, and so a function that is called, but in WebAssembly, whose calls cost more.
 template <class V>
-HWY_INLINE V Fused(V a, V b, V c) {
-#if HWY_NATIVE_FMA
-    return hn::MulAdd(a, b, c);
+#if HWY_TARGET == HWY_WASM
+HWY_INLINE
 #else
+HWY_NOINLINE
+#endif
+V FusedByDoubles(V a, V b, V c) {
     const hn::DFromV<V> d;
-    static_assert(sizeof(hn::TFromV<V>) == sizeof(float));
     if constexpr (HWY_TARGET != HWY_SCALAR && hn::MaxLanes(d) <= 2) {
         return FusedOneByOne(d, a, b, c);
     } else {
@@ -142,6 +142,17 @@ HWY_INLINE V Fused(V a, V b, V c) {
         if (HWY_UNLIKELY(MayBeRoundedTwice(d, rounded, low_bits))) return FusedOneByOne(d, a, b, c);
         return rounded;
     }
+}
+#endif
+
+/// a b + c of floats, rounded once.
+template <class V>
+HWY_INLINE V Fused(V a, V b, V c) {
+    static_assert(sizeof(hn::TFromV<V>) == sizeof(float));
+#if HWY_NATIVE_FMA
+    return hn::MulAdd(a, b, c);
+#else
+    return FusedByDoubles(a, b, c);
 #endif
 }
 
