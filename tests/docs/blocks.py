@@ -147,7 +147,7 @@ OTHERS = [
 ]
 FIRST_LINES = [  # of blocks without a word about their language
     ("json", r"\{"),
-    ("c++", r"#include "),
+    ("c++", r"#include |anamorph::"),
     ("pto", r"p f\d"),
     ("recipe", r"# \w+\.(pano|mosaic|lens|warp|morph|drape|figure)$"),
     ("python", r"(import|from) \w|[\w.]+(, [\w.]+)* = |[\w.]+\("),

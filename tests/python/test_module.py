@@ -492,7 +492,7 @@ class BadInput(unittest.TestCase):
     def test_keys_that_are_not_given(self):
         photo = noise(32, 40)
         for call, parameter in ((lambda: anamorph.pano(photo), "from"), (lambda: anamorph.lens(photo), "lens"),
-                                (lambda: anamorph.lens(photo, lens="3de4:k1=.1"), "fov"), (lambda: anamorph.warp(photo), "mesh"),
+                                (lambda: anamorph.lens(photo, lens="brown:k1=.1"), "fov"), (lambda: anamorph.warp(photo), "mesh"),
                                 (lambda: anamorph.morph(photo, photo), "features"), (lambda: anamorph.drape(photo, surface="positions"), "positions")):
             with self.subTest(parameter), self.assertRaisesRegex(anamorph.Error, f"^{parameter} is not given") as caught:
                 call()

@@ -127,7 +127,7 @@ HWY_INLINE hn::Vec<D> SumsInDouble(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c
 
 /// a b + c by doubles: long, and so a function that is called, but in WebAssembly, whose calls cost more.
 template <class V>
-#if HWY_TARGET == HWY_WASM
+#if HWY_ARCH_WASM
 HWY_INLINE
 #else
 HWY_NOINLINE
