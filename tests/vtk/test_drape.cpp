@@ -960,14 +960,14 @@ TEST(VtkDrape, WhatOtherInputsLackIsAnError) {
         return errors_of<Drape>(picture(8, 8), set);
     };
     EXPECT_THAT(error([](Drape* f) { f->SetSurface(Drape::POSITIONS); }),
-                HasSubstr("positions is not given"));
+                HasSubstr("Positions is not given"));
     EXPECT_THAT(error([](Drape* f) {
                     f->SetSurface(Drape::FORMULA);
                     f->SetFormulaZ("2*w");
                 }),
                 HasSubstr("FormulaZ=2*w: column 3: expected a name that is known"));
     EXPECT_THAT(error([](Drape* f) { f->SetBlendWeight(Drape::POSITIONS, 0.5); }),
-                HasSubstr("positions is not given"));
+                HasSubstr("Positions is not given"));
     const auto positions = [&](vtkDataObject* data) {
         return error([data](Drape* f) {
             f->SetSurface(Drape::POSITIONS);
