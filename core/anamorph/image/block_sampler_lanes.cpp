@@ -508,6 +508,7 @@ HWY_INLINE void Mend(const Texels& s, const Offsets& at, float* out) {
     if (NeedsMending(s) && !AllFinite(out, at.count * s.channels)) MendChannels(s, at, out);
 }
 
+/// MendChannels of a row of a drawing, whose points are computed once more.
 HWY_NOINLINE void MendDrawnRow(const Drawing& to, int row, float* values) {
     HWY_ALIGN float x[kRowRoom], y[kRowRoom];
     MendChannels(to.texels, PointsOfRow(to, row, x, y), values);
@@ -549,6 +550,7 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out) {
         else
             SampleTaps<T, k>(s, at, out);
     };
+    // Single numbers are sampled one by one, however many channels there are.
     if constexpr (kQuad == 4) {
         if (s.channels == 3) return with(std::integral_constant<int, 3>{});
         if (s.channels == 4) return with(std::integral_constant<int, 4>{});

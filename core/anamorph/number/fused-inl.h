@@ -125,7 +125,7 @@ HWY_INLINE hn::Vec<D> SumsInDouble(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c
 }
 #endif
 
-/// a b + c by doubles: long, and so a function that is called, but in WebAssembly, whose calls cost more.
+/// a b + c by doubles: long, and so a function that is called, but in WebAssembly, all of whose pictures are drawn by it.
 template <class V>
 #if HWY_ARCH_WASM
 HWY_INLINE
